@@ -1,0 +1,46 @@
+# How a folder of pinjaw becomes a library, a program or a test. Each folder's CMakeLists.txt is one call.
+
+find_program(PINJAW_CCACHE ccache)
+if(PINJAW_CCACHE)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${PINJAW_CCACHE})
+endif()
+
+add_library(pinjaw_flags INTERFACE)
+target_include_directories(pinjaw_flags INTERFACE ${PROJECT_SOURCE_DIR})
+target_compile_options(pinjaw_flags INTERFACE
+  -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Werror)
+if(PINJAW_SANITIZE)
+  target_compile_options(pinjaw_flags INTERFACE
+    -fsanitize=${PINJAW_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(pinjaw_flags INTERFACE -fsanitize=${PINJAW_SANITIZE})
+endif()
+
+# pinjaw_library(NAME SOURCES ... [DEPENDS targets whose headers ours include] [USES third-party targets, private])
+function(pinjaw_library name)
+  cmake_parse_arguments(ARG "PORTABLE" "" "SOURCES;DEPENDS;USES" ${ARGN})
+  if(ARG_SOURCES)
+    add_library(${name} STATIC ${ARG_SOURCES})
+    target_link_libraries(${name} PUBLIC pinjaw_flags ${ARG_DEPENDS} PRIVATE ${ARG_USES})
+    if(ARG_PORTABLE)
+      target_compile_options(${name} PRIVATE -fno-exceptions -fno-rtti)
+    endif()
+  else()
+    add_library(${name} INTERFACE)
+    target_link_libraries(${name} INTERFACE pinjaw_flags ${ARG_DEPENDS} ${ARG_USES})
+  endif()
+endfunction()
+
+# pinjaw_test(NAME SOURCES ... DEPENDS ... USES ... [LABELS ...] [TIMEOUT s])
+# GoogleTest's main; the test sees the checkout as PINJAW_SOURCE_DIR and the programs as PINJAW_BIN_DIR.
+function(pinjaw_test name)
+  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;DEPENDS;USES;LABELS" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE pinjaw_flags ${ARG_DEPENDS} ${ARG_USES} GTest::gmock GTest::gtest_main)
+  target_compile_definitions(${name} PRIVATE
+    PINJAW_SOURCE_DIR="${PROJECT_SOURCE_DIR}" PINJAW_BIN_DIR="${CMAKE_BINARY_DIR}/bin")
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 300)
+  endif()
+  add_test(NAME ${name} COMMAND ${name})
+  set_tests_properties(${name} PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}")
+endfunction()

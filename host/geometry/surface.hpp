@@ -1,0 +1,64 @@
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <optional>
+
+#include "host/geometry/mesh.hpp"
+
+namespace pinjaw::geometry {
+
+/// A disc of `radius_mm` swept in plan from `from_mm` to `to_mm` (a stadium; a disc where both are equal).
+struct Sweep {
+  Vector2d from_mm = Vector2d::Zero();
+  Vector2d to_mm = Vector2d::Zero();
+  double radius_mm = 0;
+};
+
+/// Heights that count: facets are cut to lo <= z <= hi.
+struct Slab {
+  double lo_mm = -std::numeric_limits<double>::infinity();
+  double hi_mm = std::numeric_limits<double>::infinity();
+};
+
+struct Ray {
+  Vector3d origin_mm = Vector3d::Zero();
+  Vector3d direction = Vector3d::UnitZ();  ///< unit
+};
+
+struct Hit {
+  double distance_mm = 0;
+  Vector3d point_mm = Vector3d::Zero();
+  Vector3d normal = Vector3d::UnitZ();  ///< unit, outward, of the facet
+  int triangle = 0;
+  int face = 0;
+};
+
+/// The part's surface with a spatial index: the one geometric primitive of the planner (DESIGN 4).
+///
+/// Answers exactly on the triangles, in double precision: the lowest or highest z of the surface over a disc or
+/// over a swept disc, within a slab. Immutable; copies share the index; queries may run from many threads.
+class Surface {
+ public:
+  explicit Surface(TriangleMesh mesh);
+
+  /// Lowest z of the surface over the closed region, within the slab; +inf where there is none.
+  [[nodiscard]] double lowest_z_mm(const Sweep& region, const Slab& slab = {}) const;
+  /// Highest z of the surface over the closed region, within the slab; -inf where there is none.
+  [[nodiscard]] double highest_z_mm(const Sweep& region, const Slab& slab = {}) const;
+  /// First facet hit by the ray at distance > 0, from either side; nothing where it misses.
+  [[nodiscard]] std::optional<Hit> first_hit(const Ray& ray) const;
+  /// The lowest surface point above (x, y): z and the face it lies on; nothing where there is none.
+  [[nodiscard]] std::optional<Hit> lowest_above(const Vector2d& p_mm) const;
+
+  [[nodiscard]] const TriangleMesh& mesh() const;
+  [[nodiscard]] Interval x_range_mm() const;
+  [[nodiscard]] Interval y_range_mm() const;
+  [[nodiscard]] Interval z_range_mm() const;
+
+ private:
+  struct Index;
+  std::shared_ptr<const Index> index_;
+};
+
+}  // namespace pinjaw::geometry

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "host/geometry/plane.hpp"
+#include "host/model/kit.hpp"
+
+namespace pinjaw::model {
+
+/// How many pins each jaw has: left + right.
+enum class Split { TwoTwo, ThreeOne, OneThree };
+std::string_view to_string(Split split);
+
+/// One pin of a design. Positions in the gripper frame, heights in the part frame turned by the task's side.
+struct PinDesign {
+  Hole hole;
+  double length_mm = 0;
+  double top_z_mm = 0;
+  Interval contact_z_mm;              ///< one point where lo == hi
+  Vector2d contact_mm = Vector2d::Zero();
+  Vector2d normal = Vector2d::Zero(); ///< unit, from the pin into the part
+  double foot_margin_mm = 0;
+  int feature = 0;
+};
+
+struct Squeeze {
+  double required_n = 0;
+  double usable_n = 0;
+  double limit_n = 0;
+  double margin_n = 0;       ///< usable_n - required_n
+  std::string critical;      ///< name of the disturbance that needs required_n
+};
+
+/// Another column shift of the same design that also loads.
+struct Alternative {
+  int left_shift = 0;
+  int right_shift = 0;
+  double jaw_separation_mm = 0;
+};
+
+/// A planar fixture made 3-d: one pin layout that holds the part.
+struct Design {
+  std::string id;
+  Split split = Split::TwoTwo;
+  double jaw_separation_mm = 0;
+  double jaw_open_mm = 0;
+  double closure_margin = 0;      ///< least form-closure multiplier, their sum being 1
+  geometry::Pose2 part_pose;      ///< X_GP of the part turned by the task's side
+  std::vector<PinDesign> pins;    ///< sorted by hole
+  Squeeze squeeze;
+  std::vector<Alternative> alternatives;
+};
+
+}  // namespace pinjaw::model
