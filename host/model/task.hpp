@@ -7,6 +7,7 @@
 
 #include "host/model/disturbance.hpp"
 #include "host/model/kit.hpp"
+#include "host/model/profile.hpp"
 
 namespace pinjaw::model {
 
@@ -17,9 +18,10 @@ enum class FrictionModel { Pyramid, Cone };
 struct PartSource {
   std::filesystem::path file;  ///< absolute, or relative to the working folder: already resolved
   Vector3d up = Vector3d::UnitZ();
-  std::optional<double> mass_kg;       ///< exactly one of these two
-  std::optional<double> density_g_cm3; ///< from the material
+  std::optional<double> mass_kg;        ///< exactly one of these two
+  std::optional<double> density_g_cm3;  ///< from the material
   std::string material;
+  std::optional<Profile> profile;  ///< of a `profile` file, read by config; nothing for STEP
 };
 
 struct Obstacle {

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/base/expected.hpp"
+#include "host/geometry/surface.hpp"
+#include "host/model/profile.hpp"
+#include "host/model/task.hpp"
+#include "host/part/curves.hpp"
+
+/// Parts as the planner sees them: a surface, exact edges and a mass, whatever file they came from.
+namespace pinjaw::part {
+
+/// One solid of the file.
+struct Solid {
+  std::string name;  ///< product name; empty where the file gives none
+  double volume_mm3 = 0;
+};
+
+/// Where the edges of the file went; total = kept + seams + degenerate.
+struct EdgeCounts {
+  int total = 0;
+  int kept = 0;
+  int seams = 0;       ///< seen twice by one closed face: no border at all
+  int degenerate = 0;  ///< poles and cone tips: no curve in space
+  int freeform = 0;    ///< of those kept: neither line nor circle nor ellipse, held as a polyline
+  friend bool operator==(const EdgeCounts&, const EdgeCounts&) = default;
+};
+
+/// A part in the part frame (DESIGN 2), or turned to its gripper by `turned`. Lengths in mm, mass in kg.
+struct Part {
+  std::string name;  ///< the profile's or product's name, else the file's stem
+  std::filesystem::path file;
+  std::string sha256;  ///< of the file's bytes
+  geometry::Surface surface;
+  std::vector<EdgeCurve> edges;
+  std::vector<Wall> walls;
+  EdgeCounts edge_counts;
+  std::vector<Solid> solids;  ///< all solids of the file, in the file's order
+  double mass_kg = 0;         ///< 0 where the source states neither mass nor density
+  double volume_mm3 = 0;
+  Vector3d centroid_mm = Vector3d::Zero();
+  /// The profile it was made of, when that still lies in plan: its edges are the features.
+  std::optional<model::Profile> profile;
+};
+
+/// Which solids of a file make the part.
+struct Selection {
+  std::string base;   ///< product name, case ignored, of the base solid; empty: every solid of the file
+  bool rest = false;  ///< take all solids but the base instead: what is attached to it
+};
+
+/// Chord error of the mesh, eps/5 of DESIGN 3.1 no. 1.
+inline constexpr double kMeshDeflectionMm = 0.004;
+
+/// The part of a source: its STEP file by OpenCASCADE, or its profile extruded, turned so that `up` is +z.
+/// A sentence where the file is missing, is not STEP, is broken or holds no solid.
+base::Expected<Part> read_part(const model::PartSource& source, const Selection& selection = {});
+
+/// The part as its gripper sees it: itself from below; from above turned by pi about y (DESIGN 2, BB 3.6).
+Part turned(const Part& part, model::Side side);
+
+/// The rotation that takes the direction `up` to +z by the shortest way; up = -z turns by pi about x (DESIGN
+/// 2).
+Eigen::Matrix3d upright_rotation(const Vector3d& up);
+
+}  // namespace pinjaw::part

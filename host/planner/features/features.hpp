@@ -1,0 +1,46 @@
+#pragma once
+
+#include <vector>
+
+#include "host/model/feature.hpp"
+#include "host/model/kit.hpp"
+#include "host/part/part.hpp"
+
+namespace pinjaw::planner {
+
+/// eps of DESIGN 3.1 no. 1, on the radius of a pin.
+inline constexpr double kEpsMm = 0.02;
+
+/// Where the edges of a part went in phase 1.
+struct FeatureCounts {
+  int candidates = 0;         ///< edges and walls that project to a line or circular arc
+  int left_out_upright = 0;   ///< project to a point
+  int left_out_tilted = 0;    ///< ellipses that do not project to circular arcs
+  int left_out_freeform = 0;  ///< neither line nor circle nor ellipse
+  int edgelets = 0;           ///< pieces between intersections, duplicates once
+  int visible = 0;            ///< edgelets with some length that jumps by the engagement
+  int features = 0;           ///< after adjacent survivors are joined
+  int reachable = 0;          ///< features with room for a closed pin somewhere
+  friend bool operator==(const FeatureCounts&, const FeatureCounts&) = default;
+};
+
+struct Features {
+  std::vector<model::Feature> features;  ///< all, reachable or not; id = position
+  FeatureCounts counts;
+};
+
+/// Phase 1 (DESIGN 3, BB 3.3): the edges of `part`, as its gripper sees it, that a pin of this stock can
+/// touch.
+///
+/// On a CAD part each feature's `reach_mm` is where a closed pin has room (DESIGN 3.1 no. 4). On a profile
+/// the features are model::features_of, reachable over their whole length.
+Features find_features(const part::Part& part, const model::PinStock& pins);
+
+/// The part's outline for drawings, in plan, in the frame of `part`: edges seen from below and from above.
+struct Outlines {
+  std::vector<geometry::Curve> from_below;
+  std::vector<geometry::Curve> from_above;
+};
+Outlines outlines(const part::Part& part);
+
+}  // namespace pinjaw::planner
