@@ -8,6 +8,7 @@
 #include "host/model/disturbance.hpp"
 #include "host/model/kit.hpp"
 #include "host/model/profile.hpp"
+#include "host/model/profile.hpp"
 
 namespace pinjaw::model {
 
