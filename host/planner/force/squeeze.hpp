@@ -1,0 +1,69 @@
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "host/model/task.hpp"
+#include "host/planner/force/grasp.hpp"
+
+namespace pinjaw::planner {
+
+/// The least squeeze force that can balance a wrench (BB 3.5.2): the sum over both jaws along the closing axis. Below 0
+/// where the wrench itself closes the jaws (possible only for a negative-cost grasp or a wrench pushing inwards).
+struct Required {
+  double force_n = 0;
+  double gap_n = 0;  ///< force_n is at most this above the true least force (0: exact to rounding)
+};
+
+/// No squeeze, however large, balances the wrench.
+struct Unresistable {};
+
+/// Some internal force has a negative squeeze: there is no least one. Never for a grasp that does not jam.
+struct Unbounded {};
+
+using SqueezeOutcome = std::variant<Required, Unresistable, Unbounded>;
+
+/// The squeeze force of one grasp for any number of wrenches.
+///
+/// Pyramid: BB's linear program with mu/sqrt 2, by a dual simplex that keeps the dual vertices it has met, since only the
+/// right-hand side changes from wrench to wrench; each answer is certified, and solved again in quadruple precision
+/// where the certificate is too wide. Cone: the exact Coulomb cone, by a primal simplex over the continuum of its rays
+/// from the pyramid's basis, stopped by a certified gap. Not for concurrent use; one solver a thread.
+class SqueezeSolver {
+ public:
+  explicit SqueezeSolver(const Grasp& grasp);
+  SqueezeSolver();  ///< call take() before anything else
+  SqueezeSolver(SqueezeSolver&&) noexcept;
+  SqueezeSolver& operator=(SqueezeSolver&&) noexcept;
+  ~SqueezeSolver();
+
+  /// Forgets the grasp at hand and takes another; its workspace is kept.
+  void take(const Grasp& grasp);
+
+  /// `wrench` acts on the part: N and N mm about the origin of the turned part frame, in its axes.
+  SqueezeOutcome least_squeeze(const model::Wrench& wrench, model::FrictionModel friction = model::FrictionModel::Pyramid);
+
+  /// The contact forces on the part, one a contact in the grasp's order, in the turned part frame, that balance
+  /// `wrench` with the least squeeze; nothing where least_squeeze() has no Required.
+  std::optional<std::vector<Vector3d>> balancing_forces_n(
+      const model::Wrench& wrench, model::FrictionModel friction = model::FrictionModel::Pyramid);
+
+  /// A lower bound of least_squeeze() for the pyramid from what is known so far; cheap, never above it.
+  double lower_bound_n(const model::Wrench& wrench) const;
+
+  /// Answers that had to be solved again in quadruple precision since the solver was made.
+  int exact_solves() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// The exact cone by a general non-linear solver (NLopt's SLSQP), slow and independent of SqueezeSolver: a check for top
+/// designs. Nothing where the solver does not settle within `tolerance_n`.
+std::optional<double> cone_squeeze_by_nlopt_n(const Grasp& grasp, const model::Wrench& wrench, double tolerance_n = 1e-6);
+
+}  // namespace pinjaw::planner
