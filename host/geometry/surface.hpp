@@ -8,11 +8,21 @@
 
 namespace pinjaw::geometry {
 
+/// How far outside a region still touches it. Chosen: far above rounding at 1 m, far below any mesh deflection.
+inline constexpr double kTouchMm = 1e-9;
+
 /// A disc of `radius_mm` swept in plan from `from_mm` to `to_mm` (a stadium; a disc where both are equal).
 struct Sweep {
   Vector2d from_mm = Vector2d::Zero();
   Vector2d to_mm = Vector2d::Zero();
   double radius_mm = 0;
+};
+
+/// An upright rectangle in plan; `direction` is the unit vector of its first half extent.
+struct Rectangle {
+  Vector2d center_mm = Vector2d::Zero();
+  Vector2d direction = Vector2d::UnitX();
+  Vector2d half_mm = Vector2d::Zero();
 };
 
 /// Heights that count: facets are cut to lo <= z <= hi.
@@ -37,7 +47,8 @@ struct Hit {
 /// The part's surface with a spatial index: the one geometric primitive of the planner (DESIGN 4).
 ///
 /// Answers exactly on the triangles, in double precision: the lowest or highest z of the surface over a disc or
-/// over a swept disc, within a slab. Immutable; copies share the index; queries may run from many threads.
+/// over a swept disc, within a slab. Touching counts: regions are grown by kTouchMm so that rounding cannot lose
+/// a touch. Immutable; copies share the index; queries may run from many threads.
 class Surface {
  public:
   explicit Surface(TriangleMesh mesh);
@@ -46,9 +57,13 @@ class Surface {
   [[nodiscard]] double lowest_z_mm(const Sweep& region, const Slab& slab = {}) const;
   /// Highest z of the surface over the closed region, within the slab; -inf where there is none.
   [[nodiscard]] double highest_z_mm(const Sweep& region, const Slab& slab = {}) const;
+  /// Whether any of the surface lies over the closed region, within the slab.
+  [[nodiscard]] bool meets(const Sweep& region, const Slab& slab) const;
+  [[nodiscard]] bool meets(const Rectangle& region, const Slab& slab) const;
   /// First facet hit by the ray at distance > 0, from either side; nothing where it misses.
   [[nodiscard]] std::optional<Hit> first_hit(const Ray& ray) const;
   /// The lowest surface point above (x, y): z and the face it lies on; nothing where there is none.
+  /// Its distance is counted from the lowest z of the surface.
   [[nodiscard]] std::optional<Hit> lowest_above(const Vector2d& p_mm) const;
 
   [[nodiscard]] const TriangleMesh& mesh() const;
