@@ -1,0 +1,91 @@
+#pragma once
+
+#include "firmware_sim/plant/flow.hpp"
+#include "firmware_sim/plant/friction.hpp"
+
+namespace pinjaw::plant {
+
+/// What sizes one gripper's pneumatics.
+struct Sizing {
+  double max_squeeze_n = 140;       ///< sum of both jaws, at kSizingPressure_Pa
+  double max_separation_m = 0.060;  ///< jaws fully open
+  double min_separation_m = 0.0;    ///< jaws fully closed
+};
+
+/// The two cylinder chambers' and the spool's air.
+struct AirParameters {
+  double close_area_m2 = 0;  ///< effective: sum of both jaws' force per Pa, lever losses included
+  double open_area_m2 = 0;
+  double dead_volume_m3 = 4e-6;                     // study: 1.5 cm3 dead and 2.5 cm3 hose
+  double polytropic = 1.2;                          // the same: between 1.0 (slow) and 1.4 (fast)
+  Restriction fill{0.01 * kDm3PerSecondBar, 0.3};   // the same: orifice in the close line, 0.45 N/ms at most
+  Restriction relax{0.05 * kDm3PerSecondBar, 0.3};  // the same, throttled 5/2: the close chamber's way out
+  Restriction meter_out{0.02 * kDm3PerSecondBar, 0.3};  // the same: the open chamber's way out while closing
+  Restriction open_fill{0.05 * kDm3PerSecondBar, 0.3};  // as relax
+  double check_cracking_pa = 0.2e5;                     // the same: pilot-operated check valve
+  double relief_pa = 0;                                 ///< gauge, of the close chamber
+  Restriction relief{0.3 * kDm3PerSecondBar, 0.3};      // SY3000-class seat, wide open
+  double relief_span = 0.03;                            // chosen: wide open 3 % above where it starts
+  double spring_n = 0;  ///< keeper; 0 since a keeper of 35 to 45 N excludes a light squeeze of 12 N
+};
+
+struct RegulatorParameters {
+  double delay_s = 0.005;      // chosen: within the 50 to 100 ms of the class (VPPE, study)
+  double first_lag_s = 0.015;  // chosen: with the next, 63 % in 40 ms and 90 % in 75 ms
+  double second_lag_s = 0.015;
+  double linearity = 0.01;  // study: 1 % of full scale
+  double full_scale_pa = 6e5;
+  double hysteresis_pa = 0.03e5;  // study: 0.5 % of full scale
+  double resolution_pa = 1e3;     // study: 10 mbar (MPA-S)
+};
+
+struct SpoolParameters {
+  double on_delay_s = 0.012;   // study: 5/2 solenoid
+  double off_delay_s = 0.020;  // study
+};
+
+struct SupplyParameters {
+  double nominal_pa = 6e5;     // gauge; study: 6 +/- 0.5 bar
+  double droop_pa = 0.8e5;     // study: when a neighbour moves
+  double droop_lag_s = 0.080;  // study
+  double loss_lag_s = 0.300;   // study
+};
+
+struct JawParameters {
+  double moving_mass_kg = 0.35;        // study: jaws, grid plates, pins
+  double stroke_m = 0.030;             ///< of each jaw
+  double max_separation_m = 0.060;     ///< at displacement 0
+  double contact_n_m = 4e6;            // study: two 6.35 mm steel pins a jaw and the jaw guide, sum over jaws
+  double contact_damping_n_s_m = 450;  // study: 300 to 600
+  double end_stop_n_m = 1e7;           // chosen: stiffer than the contact
+  double end_stop_damping_n_s_m = 1500;  // chosen: little rebound
+};
+
+struct SensorParameters {
+  double pressure_step_pa = 10e5 / 4096;  // study: 12 bit over 10 bar
+  double pressure_noise_pa = 500;         // study: 5 mbar rms
+  double pressure_offset_pa = 0.1e5;      // study: +/- 1 % of full scale, drawn per sensor
+  double pressure_lag_s = 0.002;          // study: filter
+  double pressure_range_pa = 10e5;
+  double position_step_m = 1e-5;  // study: 10 um
+};
+
+/// One gripper's pneumatics, mechanics and sensors, in SI. 'Study' is the plant table of the project's
+/// reliability study (Nov 2026: catalogue figures of SMC SY3000, PHD GRS, Festo VPPE and MPA-S, and own
+/// lumped simulations).
+struct Parameters {
+  AirParameters air;
+  RegulatorParameters regulator;
+  SpoolParameters spool;
+  SupplyParameters supply;
+  JawParameters jaw;
+  FrictionParameters friction;
+  SensorParameters sensors;
+};
+
+constexpr double kSizingPressure_Pa = 5.4e5;  // gauge; study: 140 N from 2.59e-4 m2
+
+/// The figures above with the area, stroke and relief that follow from `sizing`.
+Parameters parameters_for(const Sizing& sizing);
+
+}  // namespace pinjaw::plant
