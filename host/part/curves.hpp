@@ -39,7 +39,7 @@ struct EdgeCurve {
   int edge = 0;  ///< number of the edge in the file, from 1
   Curve3 curve;
   bool approximate = false;  ///< a B-spline recognised as a line or circle by fit
-  std::vector<int> faces;    ///< numbers of the faces it bounds, as in the mesh's `face_of`
+  std::vector<int> faces{};  ///< numbers of the faces it bounds, as in the mesh's `face_of`
 };
 
 /// An upright plane or cylinder of the part in plan: a source of features of its own (DESIGN 3.1 no. 3).

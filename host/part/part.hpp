@@ -39,11 +39,14 @@ struct Part {
   std::vector<EdgeCurve> edges;
   std::vector<Wall> walls;
   EdgeCounts edge_counts;
+  double mesh_deflection_mm =
+      0;  ///< chord error of `surface`: kMeshDeflectionMm unless the part is too large for it
   std::vector<Solid> solids;  ///< all solids of the file, in the file's order
   double mass_kg = 0;         ///< 0 where the source states neither mass nor density
   double volume_mm3 = 0;
   Vector3d centroid_mm = Vector3d::Zero();
-  /// The profile it was made of, when that still lies in plan: its edges are the features.
+  /// The profile it was made of, while that lies in plan: its edges are the features. A turned profile is
+  /// mirrored: each edge keeps its number and its material on the left, so the list runs against the travel.
   std::optional<model::Profile> profile;
 };
 
@@ -55,6 +58,9 @@ struct Selection {
 
 /// Chord error of the mesh, eps/5 of DESIGN 3.1 no. 1.
 inline constexpr double kMeshDeflectionMm = 0.004;
+
+/// A mesh that would need more triangles is made coarser; some 100 MB and two seconds.
+inline constexpr int kMostTriangles = 600'000;
 
 /// The part of a source: its STEP file by OpenCASCADE, or its profile extruded, turned so that `up` is +z.
 /// A sentence where the file is missing, is not STEP, is broken or holds no solid.

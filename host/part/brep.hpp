@@ -1,0 +1,71 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "host/base/expected.hpp"
+#include "host/geometry/mesh.hpp"
+#include "host/model/profile.hpp"
+#include "host/part/part.hpp"
+
+class TopoDS_Shape;  // OpenCASCADE's, complete only in this folder's sources
+
+/// Boundary representations, and what the planner needs out of them. Private to host/part.
+namespace pinjaw::part {
+
+using Shape = std::shared_ptr<const TopoDS_Shape>;
+
+struct NamedShape {
+  std::string name;
+  Shape shape;
+};
+
+/// The solids of a STEP file's text, in mm, in the file's order; at least one.
+/// `file` only names it in the sentence of a failure.
+base::Expected<std::vector<NamedShape>> read_step(const std::string& text, const std::string& file);
+
+/// The profile's loops extruded from z = 0 to its thickness; a failure where they bound no area.
+base::Expected<Shape> prism_of(const model::Profile& profile);
+
+/// Several solids as one shape.
+Shape compound_of(const std::vector<NamedShape>& solids);
+
+struct BrepMesh {
+  geometry::TriangleMesh mesh;
+  double deflection_mm = 0;  ///< chord error asked of the mesher
+};
+
+/// Triangles of the shape's surface, faces numbered from 1. Starts at kMeshDeflectionMm and doubles it, up to
+/// 0.8 eps, while there are more than `most_triangles`.
+base::Expected<BrepMesh> mesh_of(const Shape& shape, int most_triangles);
+
+struct BrepMass {
+  double volume_mm3 = 0;
+  Vector3d centroid_mm = Vector3d::Zero();
+};
+base::Expected<BrepMass> mass_of(const Shape& shape);
+
+struct BrepEdges {
+  std::vector<EdgeCurve> edges;
+  EdgeCounts counts;
+};
+base::Expected<BrepEdges> edges_of(const Shape& shape);
+
+/// A face that can be a wall when it stands upright.
+struct PlaneFace {
+  Vector3d normal = Vector3d::UnitX();
+};
+struct CylinderFace {
+  Vector3d point_mm = Vector3d::Zero();
+  Vector3d axis = Vector3d::UnitZ();
+  double radius_mm = 0;
+};
+struct WallFace {
+  int face = 0;
+  std::variant<PlaneFace, CylinderFace> surface;
+};
+base::Expected<std::vector<WallFace>> wall_faces_of(const Shape& shape);
+
+}  // namespace pinjaw::part

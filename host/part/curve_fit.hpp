@@ -1,0 +1,14 @@
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "host/part/curves.hpp"
+
+namespace pinjaw::part {
+
+/// The line or circle that all `samples` (in order along one curve) lie on within `tolerance_mm`; nothing
+/// where there is none. A closed curve repeats its first sample as its last.
+std::optional<Curve3> recognised(std::span<const Vector3d> samples, double tolerance_mm);
+
+}  // namespace pinjaw::part

@@ -1,0 +1,162 @@
+#include "host/part/part.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "host/base/files.hpp"
+#include "host/base/sha256.hpp"
+#include "host/part/brep.hpp"
+#include "host/part/placing.hpp"
+
+namespace pinjaw::part {
+namespace {
+
+constexpr double kKgPerMm3AtOneGPerCm3 = 1e-6;
+
+std::string lower_case(std::string text) {
+  std::ranges::transform(text, text.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+bool is_step(const std::filesystem::path& file) {
+  const std::string ending = lower_case(file.extension().string());
+  return ending == ".step" || ending == ".stp";
+}
+
+base::Expected<std::vector<NamedShape>> solids_of(const model::PartSource& source, const std::string& bytes) {
+  if (source.profile) {
+    return prism_of(*source.profile).map([&](const Shape& shape) {
+      return std::vector<NamedShape>{{source.profile->name, shape}};
+    });
+  }
+  if (!is_step(source.file)) {
+    return base::failure(source.file.string() +
+                         ": not a part file; expected .step, .stp or a profile in .yaml");
+  }
+  return read_step(bytes, source.file.string());
+}
+
+base::Expected<std::vector<NamedShape>> selected(const std::vector<NamedShape>& solids,
+                                                 const Selection& selection, const std::string& file) {
+  if (selection.base.empty()) return solids;
+  std::vector<NamedShape> base;
+  std::vector<NamedShape> rest;
+  std::string names;
+  for (const NamedShape& solid : solids) {
+    const bool wanted = base.empty() && lower_case(solid.name) == lower_case(selection.base);
+    (wanted ? base : rest).push_back(solid);
+    names += (names.empty() ? "\"" : ", \"") + solid.name + "\"";
+  }
+  if (base.empty()) {
+    return base::failure(file + ": no solid is named \"" + selection.base + "\"; it holds " + names);
+  }
+  if (selection.rest && rest.empty()) {
+    return base::failure(file + ": holds nothing but \"" + selection.base + "\"");
+  }
+  return selection.rest ? rest : base;
+}
+
+std::string name_of(const std::vector<NamedShape>& chosen, const std::filesystem::path& file) {
+  return chosen.size() == 1 && !chosen.front().name.empty() ? chosen.front().name : file.stem().string();
+}
+
+double mass_kg(const model::PartSource& source, double volume_mm3) {
+  if (source.mass_kg) return *source.mass_kg;
+  return source.density_g_cm3.value_or(0) * volume_mm3 * kKgPerMm3AtOneGPerCm3;
+}
+
+/// The profile as it lies in plan under `rotation`; nothing where it no longer does.
+std::optional<model::Profile> profile_in_plan(const std::optional<model::Profile>& profile,
+                                              const Eigen::Matrix3d& rotation) {
+  if (!profile || rotation.isIdentity(0)) return profile;
+  if (rotation == upright_rotation(-Vector3d::UnitZ())) return mirrored(*profile, 1);
+  return std::nullopt;
+}
+
+base::Expected<std::vector<Solid>> listed(const std::vector<NamedShape>& solids) {
+  std::vector<Solid> list;
+  for (const NamedShape& solid : solids) {
+    const auto mass = mass_of(solid.shape);
+    if (!mass) return tl::unexpected(mass.error());
+    list.push_back({solid.name, mass->volume_mm3});
+  }
+  return list;
+}
+
+base::Expected<Part> part_of(const model::PartSource& source, const std::vector<NamedShape>& solids,
+                             const std::vector<NamedShape>& chosen) {
+  const Eigen::Matrix3d rotation = upright_rotation(source.up);
+  const Shape shape = compound_of(chosen);
+  auto list = listed(solids);
+  if (!list) return tl::unexpected(list.error());
+  const auto mass = mass_of(shape);
+  if (!mass) return tl::unexpected(mass.error());
+  auto edges = edges_of(shape);
+  if (!edges) return tl::unexpected(edges.error());
+  const auto faces = wall_faces_of(shape);
+  if (!faces) return tl::unexpected(faces.error());
+  auto meshed = mesh_of(shape, kMostTriangles);
+  if (!meshed) return tl::unexpected(meshed.error());
+
+  for (EdgeCurve& edge : edges->edges) edge.curve = rotated(edge.curve, rotation);
+  geometry::TriangleMesh mesh = rotated(std::move(meshed->mesh), rotation);
+  auto walls = walls_of(*faces, rotation, mesh);
+  return Part{.name = name_of(chosen, source.file),
+              .file = source.file,
+              .sha256 = {},
+              .surface = geometry::Surface(std::move(mesh)),
+              .edges = std::move(edges->edges),
+              .walls = std::move(walls),
+              .edge_counts = edges->counts,
+              .mesh_deflection_mm = meshed->deflection_mm,
+              .solids = std::move(*list),
+              .mass_kg = mass_kg(source, mass->volume_mm3),
+              .volume_mm3 = mass->volume_mm3,
+              .centroid_mm = rotation * mass->centroid_mm,
+              .profile = profile_in_plan(source.profile, rotation)};
+}
+
+}  // namespace
+
+base::Expected<Part> read_part(const model::PartSource& source, const Selection& selection) {
+  const std::string file = source.file.string();
+  if (!(source.up.norm() > 0) || !source.up.allFinite()) return base::failure(file + ": up has no direction");
+  const auto bytes = base::read_file(source.file);
+  if (!bytes) return base::failure(file + ": " + bytes.error().message);
+  const auto solids = solids_of(source, *bytes);
+  if (!solids) return tl::unexpected(solids.error());
+  const auto chosen = selected(*solids, selection, file);
+  if (!chosen) return tl::unexpected(chosen.error());
+  auto part = part_of(source, *solids, *chosen);
+  if (!part) return base::failure(file + ": " + part.error().message);
+  part->sha256 = base::sha256(*bytes);
+  return part;
+}
+
+Part turned(const Part& part, model::Side side) {
+  if (side == model::Side::Below) return part;
+  const Eigen::Matrix3d rotation = Vector3d(-1, 1, -1).asDiagonal();
+  Part result = part;
+  result.surface = geometry::Surface(rotated(part.surface.mesh(), rotation));
+  for (EdgeCurve& edge : result.edges) edge.curve = rotated(edge.curve, rotation);
+  for (Wall& wall : result.walls) {
+    wall.curve = mirrored(wall.curve, 0);
+    wall.z_mm = {-wall.z_mm.hi, -wall.z_mm.lo};
+  }
+  if (result.profile) result.profile = mirrored(*result.profile, 0);
+  result.centroid_mm = rotation * part.centroid_mm;
+  return result;
+}
+
+Eigen::Matrix3d upright_rotation(const Vector3d& up) {
+  const Vector3d u = up.normalized();
+  constexpr double kOpposite = 1e-12;  // 1 + cos of the turn below which the shortest turn is not unique
+  if (1 + u.z() < kOpposite) return Vector3d(1, -1, -1).asDiagonal();
+  Eigen::Matrix3d cross;  // of u x z
+  cross << 0, 0, -u.x(), 0, 0, -u.y(), u.x(), u.y(), 0;
+  return Eigen::Matrix3d::Identity() + cross + cross * cross / (1 + u.z());
+}
+
+}  // namespace pinjaw::part

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "host/model/profile.hpp"
+#include "host/part/brep.hpp"
+#include "host/part/curves.hpp"
+
+/// Rotations of the values a part is made of, and its walls once it stands. Private to host/part.
+namespace pinjaw::part {
+
+using Eigen::Matrix3d;
+
+Curve3 rotated(const Curve3& curve, const Matrix3d& rotation);
+geometry::TriangleMesh rotated(geometry::TriangleMesh mesh, const Matrix3d& rotation);
+
+/// A curve of the plan view seen from behind: mirrored across the y axis (`axis` 0: x changes sign) or the x
+/// axis (1: y changes sign). Segments swap their ends, so material on the left stays on the left.
+geometry::Curve mirrored(const geometry::Curve& curve, int axis);
+model::Profile mirrored(model::Profile profile, int axis);
+
+/// The upright ones of `faces` in plan, as far as `mesh` reaches; both in the same frame as `rotation` leaves
+/// them.
+std::vector<Wall> walls_of(const std::vector<WallFace>& faces, const Matrix3d& rotation,
+                           const geometry::TriangleMesh& rotated_mesh);
+
+}  // namespace pinjaw::part
