@@ -26,19 +26,24 @@ struct Diagnostic {
 /// All the mistakes found, in the order found, each once.
 class Diagnostics {
  public:
+  static constexpr std::size_t kMost = 1000;  ///< chosen: nobody reads more; bounds hostile files
+
   Diagnostics() = default;
   explicit Diagnostics(Diagnostic only) { add(std::move(only)); }
 
   void add(Diagnostic diagnostic);
+  void add(Place place, std::string key, std::string message);
   void add(const Diagnostics& others);
 
   [[nodiscard]] bool empty() const { return items_.empty(); }
-  [[nodiscard]] std::size_t size() const { return items_.size(); }
+  /// How many were found, those beyond kMost, which are only counted, among them.
+  [[nodiscard]] std::size_t size() const { return items_.size() + only_counted_; }
   [[nodiscard]] auto begin() const { return items_.begin(); }
   [[nodiscard]] auto end() const { return items_.end(); }
 
  private:
   std::vector<Diagnostic> items_;
+  std::size_t only_counted_ = 0;
 };
 
 /// A value read from files, or every mistake that kept it from being read.
@@ -48,7 +53,8 @@ using Checked = tl::expected<T, Diagnostics>;
 /// `file:line:column: error: key: message`, without what is empty.
 std::string to_string(const Diagnostic& diagnostic);
 
-/// One line a mistake, sorted by place within each file, then `N mistakes; CONSEQUENCE`, e.g. "nothing was planned".
+/// One line a mistake, sorted by place within each file, then `N mistakes; CONSEQUENCE`, e.g. "nothing was
+/// planned".
 std::string render(const Diagnostics& diagnostics, std::string_view consequence);
 
 /// The word of `known` that `word` was probably meant to be; empty where none is near.

@@ -14,8 +14,9 @@ namespace pinjaw::base {
 Expected<std::string> read_file(const std::filesystem::path& path,
                                 std::size_t at_most_bytes = std::numeric_limits<std::size_t>::max());
 
-/// Writes the file so that it appears whole or not at all: into a neighbour file, flushed to disk, then renamed.
-/// An existing file is replaced, its permissions kept; a link is followed; devices and pipes are written straight.
+/// Writes the file so that it appears whole or not at all: into a neighbour file, flushed to disk, then
+/// renamed. An existing file is replaced, its permissions kept; a link is followed; devices and pipes are
+/// written straight.
 Expected<void> write_file_whole(const std::filesystem::path& path, std::string_view bytes);
 
 }  // namespace pinjaw::base

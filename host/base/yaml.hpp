@@ -11,8 +11,8 @@
 
 #include "host/base/diagnostics.hpp"
 
-/// A strict reader of YAML (of which JSON is a part). Every value knows its place and key path; each mistake goes
-/// into the file's diagnostics, and reading goes on, so that all of a file's mistakes are told at once.
+/// A strict reader of YAML (of which JSON is a part). Every value knows its place and key path; each mistake
+/// goes into the file's diagnostics, and reading goes on, so that all of a file's mistakes are told at once.
 namespace pinjaw::base {
 
 struct YamlNode;  // the tree, yaml.cpp's own
@@ -61,7 +61,8 @@ class YamlValue {
   /// Position in `words` of the one that is written.
   [[nodiscard]] std::optional<std::size_t> one_of(const std::vector<std::string>& words) const;
   /// The entries; nothing where it is not a list or has a wrong count.
-  [[nodiscard]] std::optional<std::vector<YamlValue>> list(std::string_view what, const CountRule& rule = {}) const;
+  [[nodiscard]] std::optional<std::vector<YamlValue>> list(std::string_view what,
+                                                           const CountRule& rule = {}) const;
   /// `count` numbers; nothing where one of them is wrong.
   [[nodiscard]] std::optional<std::vector<double>> numbers(std::size_t count, const NumberRule& rule,
                                                            std::string_view what) const;
@@ -129,9 +130,9 @@ class YamlMap {
 /// aliases, tags and several documents are refused; a key given twice is reported.
 class YamlFile {
  public:
-  static constexpr std::size_t kMaxBytes = 4U << 20U;   ///< chosen: a hundred times the longest file of ours
-  static constexpr int kMaxDepth = 32;                  ///< chosen: ours nest to 7
-  static constexpr std::size_t kMaxValues = 200000;     ///< chosen: bounds memory to some 50 MB
+  static constexpr std::size_t kMaxBytes = 4U << 20U;  ///< chosen: a hundred times the longest file of ours
+  static constexpr int kMaxDepth = 32;                 ///< chosen: ours nest to 7
+  static constexpr std::size_t kMaxValues = 200000;    ///< chosen: bounds memory to some 50 MB
 
   /// Reads and parses the file. What cannot be parsed leaves a file without a root and with diagnostics.
   explicit YamlFile(const std::filesystem::path& path);
