@@ -1,21 +1,29 @@
 #include "protocol/bench/bench.hpp"
 
+#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 namespace pinjaw::bench {
 namespace {
+
 using nlohmann::json;
+
+/// JSON has no infinity: null stands for it.
+json finite_or_null(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+
+double number_or_infinite(const json& j) {
+  return j.is_null() ? std::numeric_limits<double>::infinity() : j.get<double>();
+}
+
 }  // namespace
 
-// JSON has no infinity: nothing stands for it.
 static void to_json(json& j, const NeededSqueeze& needed) {
-  j = {{"node", needed.node}, {"squeeze_n", needed.squeeze_n}};
+  j = {{"node", needed.node}, {"squeeze_n", finite_or_null(needed.squeeze_n)}};
 }
 static void from_json(const json& j, NeededSqueeze& needed) {
   needed.node = j.at("node").get<int>();
-  const json& squeeze = j.at("squeeze_n");
-  needed.squeeze_n = squeeze.is_null() ? std::numeric_limits<double>::infinity() : squeeze.get<double>();
+  needed.squeeze_n = number_or_infinite(j.at("squeeze_n"));
 }
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Grasp, node, separation_mm, needed_n)
@@ -41,7 +49,7 @@ static void to_json(json& j, const NodeTruth& t) {
        {"squeeze_n", t.squeeze_n},
        {"left_n", t.left_n},
        {"right_n", t.right_n},
-       {"needed_n", t.needed_n},
+       {"needed_n", finite_or_null(t.needed_n)},
        {"limit_n", t.limit_n},
        {"max_squeeze_n", t.max_squeeze_n},
        {"max_steady_n", t.max_steady_n},
@@ -58,8 +66,7 @@ static void from_json(const json& j, NodeTruth& t) {
   j.at("squeeze_n").get_to(t.squeeze_n);
   j.at("left_n").get_to(t.left_n);
   j.at("right_n").get_to(t.right_n);
-  const json& needed = j.at("needed_n");
-  t.needed_n = needed.is_null() ? std::numeric_limits<double>::infinity() : needed.get<double>();
+  t.needed_n = number_or_infinite(j.at("needed_n"));
   j.at("limit_n").get_to(t.limit_n);
   j.at("max_squeeze_n").get_to(t.max_squeeze_n);
   j.at("max_steady_n").get_to(t.max_steady_n);
