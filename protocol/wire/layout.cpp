@@ -1,0 +1,274 @@
+#include "protocol/wire/layout.hpp"
+
+#include <optional>
+#include <utility>
+
+#include "protocol/wire/bits.hpp"
+#include "protocol/wire/codes.hpp"
+#include "protocol/wire/crc.hpp"
+
+namespace pinjaw::wire {
+
+namespace {
+
+constexpr std::uint8_t kCylinder = 0;
+
+void put_pins(ByteWriter& out, const Layout& layout) {
+  out.put(layout.pin_count, 1);
+  for (const LayoutPin& pin : layout.used_pins()) {
+    out.put(static_cast<std::uint8_t>(pin.jaw), 1);
+    out.put(static_cast<std::uint8_t>(pin.column), 1);
+    out.put(static_cast<std::uint8_t>(pin.row), 1);
+    out.put(kCylinder, 1);
+    out.put(pin.length_10um, 2);
+  }
+}
+
+void put_body(ByteWriter& out, const Layout& layout) {
+  out.put(kLayoutMagic, 4);
+  out.put(kLayoutSchema, 1);
+  out.put(static_cast<std::uint8_t>(layout.node_class), 1);
+  out.put(layout.kit_id, 2);
+  out.put(layout.part_id, 4);
+  out.put(layout.grid_pitch_nm, 4);
+  out.put(layout.pin_diameter_nm, 4);
+  put_pins(out, layout);
+  out.put(layout.separation_open_10um, 2);
+  out.put(layout.separation_contact_10um, 2);
+  out.put(layout.separation_tolerance_10um, 2);
+  out.put(layout.f_light_dn, 2);
+  out.put(layout.f_required_dn, 2);
+  out.put(layout.f_limit_dn, 2);
+  out.put(layout.slip_tolerance_um, 2);
+  out.put(layout.stable_ms, 2);
+  out.put(layout.passive ? 1 : 0, 1);
+}
+
+void put_peers(ByteWriter& out, const Layout& layout) {
+  out.put(layout.peer_count, 1);
+  for (const LayoutPeer& peer : layout.used_peers()) {
+    out.put(peer.node, 1);
+    out.put(peer.layout_crc, 4);
+    out.put(peer.f_required_dn, 2);
+    out.put(peer.pair_crc, 2);
+  }
+}
+
+TransferStatus read_pins(ByteReader& in, Layout& layout) {
+  layout.pin_count = static_cast<std::uint8_t>(in.take(1));
+  if (in.truncated()) return TransferStatus::Length;
+  if (layout.pin_count < 1 || layout.pin_count > kMaxPins) return TransferStatus::PinCount;
+  for (LayoutPin& pin : std::span(layout.pins).first(layout.pin_count)) {
+    const std::uint32_t jaw = in.take(1);
+    pin.jaw = jaw == 0 ? Jaw::Left : Jaw::Right;
+    pin.column = static_cast<std::int8_t>(in.take(1));
+    pin.row = static_cast<std::int8_t>(in.take(1));
+    const std::uint32_t kind = in.take(1);
+    pin.length_10um = static_cast<std::uint16_t>(in.take(2));
+    if (in.truncated()) return TransferStatus::Length;
+    if (jaw > 1 || kind != kCylinder || pin.column < 0 || pin.row < 0 || pin.length_10um == 0) {
+      return TransferStatus::Pin;
+    }
+  }
+  return TransferStatus::Ok;
+}
+
+TransferStatus read_head(ByteReader& in, Layout& layout) {
+  if (in.take(4) != kLayoutMagic) return in.truncated() ? TransferStatus::Length : TransferStatus::Magic;
+  if (in.take(1) != kLayoutSchema) return in.truncated() ? TransferStatus::Length : TransferStatus::Schema;
+  const std::uint32_t node_class = in.take(1);
+  layout.node_class = node_class == 1 ? NodeClass::Gripper : NodeClass::Passive;
+  layout.kit_id = static_cast<std::uint16_t>(in.take(2));
+  layout.part_id = in.take(4);
+  layout.grid_pitch_nm = in.take(4);
+  layout.pin_diameter_nm = in.take(4);
+  if (in.truncated()) return TransferStatus::Length;
+  if (node_class < 1 || node_class > 2) return TransferStatus::NodeClass;
+  return TransferStatus::Ok;
+}
+
+TransferStatus read_numbers(ByteReader& in, Layout& layout) {
+  const auto u16 = [&in] { return static_cast<std::uint16_t>(in.take(2)); };
+  layout.separation_open_10um = u16();
+  layout.separation_contact_10um = u16();
+  layout.separation_tolerance_10um = u16();
+  layout.f_light_dn = u16();
+  layout.f_required_dn = u16();
+  layout.f_limit_dn = u16();
+  layout.slip_tolerance_um = u16();
+  layout.stable_ms = u16();
+  const std::uint32_t passive = in.take(1);
+  layout.passive = passive == 1;
+  if (in.truncated()) return TransferStatus::Length;
+  if (passive > 1) return TransferStatus::PassiveFields;
+  return TransferStatus::Ok;
+}
+
+TransferStatus read_peers(ByteReader& in, Layout& layout) {
+  layout.peer_count = static_cast<std::uint8_t>(in.take(1));
+  if (in.truncated()) return TransferStatus::Length;
+  if (layout.peer_count > kMaxPeers) return TransferStatus::Peers;
+  for (LayoutPeer& peer : std::span(layout.peers).first(layout.peer_count)) {
+    peer.node = static_cast<std::uint8_t>(in.take(1));
+    peer.layout_crc = in.take(4);
+    peer.f_required_dn = static_cast<std::uint16_t>(in.take(2));
+    peer.pair_crc = static_cast<std::uint16_t>(in.take(2));
+  }
+  return in.truncated() ? TransferStatus::Length : TransferStatus::Ok;
+}
+
+/// Reads a checksum and compares it with that of the bytes from `begin` to it.
+std::optional<bool> checksum_holds(ByteReader& in, std::span<const std::uint8_t> bytes, std::size_t begin) {
+  const std::size_t end = in.used();
+  const std::uint32_t told = in.take(4);
+  if (in.truncated()) return std::nullopt;
+  return told == crc_of<Crc32>(bytes.subspan(begin, end - begin));
+}
+
+bool has_duplicate_hole(std::span<const LayoutPin> pins) {
+  for (std::size_t i = 0; i < pins.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (pins[i].jaw == pins[j].jaw && pins[i].column == pins[j].column && pins[i].row == pins[j].row)
+        return true;
+    }
+  }
+  return false;
+}
+
+std::size_t pins_of(const Layout& layout, Jaw jaw) {
+  std::size_t count = 0;
+  for (const LayoutPin& pin : layout.used_pins()) count += pin.jaw == jaw ? 1 : 0;
+  return count;
+}
+
+TransferStatus check_passive(const Layout& layout) {
+  const bool one_jaw = pins_of(layout, Jaw::Left) == 0 || pins_of(layout, Jaw::Right) == 0;
+  const bool forceless = layout.f_light_dn == 0 && layout.f_required_dn == 0;
+  return one_jaw && forceless ? TransferStatus::Ok : TransferStatus::PassiveFields;
+}
+
+TransferStatus check_gripper(const Layout& layout) {
+  if (pins_of(layout, Jaw::Left) == 0 || pins_of(layout, Jaw::Right) == 0)
+    return TransferStatus::JawWithoutPins;
+  const unsigned reach = unsigned{layout.separation_contact_10um} + layout.separation_tolerance_10um;
+  if (layout.separation_open_10um <= reach || layout.separation_open_10um > kMaxSeparation_10um) {
+    return TransferStatus::Separation;
+  }
+  if (layout.f_light_dn >= layout.f_required_dn || layout.f_light_dn == 0) return TransferStatus::LightForce;
+  if (layout.f_required_dn > layout.f_limit_dn) return TransferStatus::ForceWindow;
+  if (layout.f_limit_dn > kMaxForce_dn) return TransferStatus::ForceOverHardware;
+  if (layout.slip_tolerance_um == 0) return TransferStatus::Timing;
+  return TransferStatus::Ok;
+}
+
+TransferStatus check_peers(const Layout& layout) {
+  const std::span<const LayoutPeer> peers = layout.used_peers();
+  for (std::size_t i = 0; i < peers.size(); ++i) {
+    if (peers[i].node < kFirstNode || peers[i].node > kLastNode) return TransferStatus::Peers;
+    if (layout.peer(peers[i].node) != &peers[i]) return TransferStatus::Peers;
+  }
+  return TransferStatus::Ok;
+}
+
+TransferStatus check_content(const Layout& layout) {
+  if (has_duplicate_hole(layout.used_pins())) return TransferStatus::DuplicateHole;
+  if (layout.passive != (layout.node_class == NodeClass::Passive)) return TransferStatus::PassiveFields;
+  if (layout.stable_ms == 0) return TransferStatus::Timing;
+  const TransferStatus status = layout.passive ? check_passive(layout) : check_gripper(layout);
+  return status == TransferStatus::Ok ? check_peers(layout) : status;
+}
+
+constexpr int digit(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+  return -1;
+}
+
+std::uint32_t first_digits(std::span<const char> hex, std::size_t count) {
+  if (hex.size() < count) return 0;
+  std::uint32_t value = 0;
+  for (const char c : hex.first(count)) {
+    if (digit(c) < 0) return 0;
+    value = value << 4 | static_cast<std::uint32_t>(digit(c));
+  }
+  return value;
+}
+
+}  // namespace
+
+EncodedLayout encode(const Layout& layout) {
+  EncodedLayout encoded;
+  ByteWriter out(encoded.bytes);
+  put_body(out, layout);
+  const std::size_t body = out.used();
+  out.put(crc_of<Crc32>(std::span(encoded.bytes).first(body)), 4);
+  const std::size_t peers = out.used();
+  put_peers(out, layout);
+  out.put(crc_of<Crc32>(std::span(encoded.bytes).subspan(peers, out.used() - peers)), 4);
+  encoded.size = out.used();
+  return encoded;
+}
+
+std::uint32_t layout_crc_of(const Layout& layout) {
+  EncodedLayout encoded;
+  ByteWriter out(encoded.bytes);
+  put_body(out, layout);
+  return crc_of<Crc32>(std::span(encoded.bytes).first(out.used()));
+}
+
+Result<Layout, TransferStatus> decode_layout(std::span<const std::uint8_t> bytes) {
+  Layout layout;
+  ByteReader in(bytes);
+  for (const auto read : {read_head, read_pins, read_numbers}) {
+    if (const TransferStatus status = read(in, layout); status != TransferStatus::Ok) return status;
+  }
+  const std::optional<bool> body_holds = checksum_holds(in, bytes, 0);
+  if (!body_holds) return TransferStatus::Length;
+  if (!*body_holds) return TransferStatus::LayoutChecksum;
+  const std::size_t peers = in.used();
+  if (const TransferStatus status = read_peers(in, layout); status != TransferStatus::Ok) return status;
+  const std::optional<bool> peers_hold = checksum_holds(in, bytes, peers);
+  if (!peers_hold || in.left() != 0) return TransferStatus::Length;
+  if (!*peers_hold) return TransferStatus::PeersChecksum;
+  if (const TransferStatus status = check_content(layout); status != TransferStatus::Ok) return status;
+  return layout;
+}
+
+TransferStatus admissible(const Layout& layout, const LayoutTarget& target) {
+  if (layout.node_class != target.node_class) return TransferStatus::NodeClass;
+  if (layout.kit_id != target.kit_id) return TransferStatus::Kit;
+  const std::uint32_t own_crc = layout_crc_of(layout);
+  for (const LayoutPeer& peer : layout.used_peers()) {
+    if (peer.node == target.node) return TransferStatus::Peers;
+    const PairSide own{target.node, own_crc};
+    if (peer.pair_crc != pair_crc_of(layout.part_id, own, {peer.node, peer.layout_crc})) {
+      return TransferStatus::PairChecksum;
+    }
+  }
+  if (layout.passive) return TransferStatus::Ok;
+  if (layout.f_limit_dn > target.f_hardware_dn) return TransferStatus::ForceOverHardware;
+  if (layout.f_required_dn + 2U * target.f_uncertainty_dn > layout.f_limit_dn)
+    return TransferStatus::ForceWindow;
+  return TransferStatus::Ok;
+}
+
+std::uint16_t pair_crc_of(std::uint32_t part_id, PairSide one, PairSide other) {
+  if (other.node < one.node) std::swap(one, other);
+  std::array<std::uint8_t, 12> bytes{};
+  ByteWriter out(bytes);
+  out.put(part_id, 4);
+  out.put(one.layout_crc, 4);
+  out.put(other.layout_crc, 4);
+  return crc_of<Crc16>(bytes);
+}
+
+std::uint16_t kit_id_of(std::span<const char> sha256_hex) {
+  return static_cast<std::uint16_t>(first_digits(sha256_hex, 4));
+}
+
+std::uint32_t part_id_of(std::span<const char> sha256_hex) {
+  return first_digits(sha256_hex, 8);
+}
+
+}  // namespace pinjaw::wire

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstdint>
+
+#include "protocol/wire/timing.hpp"
+
+/// What a receiver keeps of each (message, node) to notice loss, repetition and silence.
+namespace pinjaw::wire {
+
+inline constexpr std::uint8_t kCounterModulus = 15;
+
+/// The CTR that follows `counter`.
+constexpr std::uint8_t next_counter(std::uint8_t counter) {
+  return static_cast<std::uint8_t>((counter + 1U) % kCounterModulus);
+}
+
+enum class CounterVerdict : std::uint8_t {
+  Qualifying,  ///< in order, but not yet three in a row: do not use
+  Qualified,
+  Discarded,  ///< repeated or too far ahead: do not use
+};
+
+/// Accepts counters that rise by 1 to 3 (two losses); after anything else, and at the start, three in a row
+/// are needed. The very first frame counts as the first of three: nothing contradicts it.
+class CounterCheck {
+ public:
+  static constexpr std::uint8_t kLargestStep = 3;
+  static constexpr std::uint8_t kInARow = 3;
+
+  /// Precondition: counter 0..14.
+  constexpr CounterVerdict accept(std::uint8_t counter) {
+    const unsigned step = (kCounterModulus + unsigned{counter} - last_) % kCounterModulus;
+    const bool in_order = !heard_ || (step >= 1 && step <= kLargestStep);
+    heard_ = true;
+    last_ = counter;
+    if (!in_order) {
+      in_a_row_ = 0;
+      return CounterVerdict::Discarded;
+    }
+    if (in_a_row_ < kInARow) ++in_a_row_;
+    return qualified() ? CounterVerdict::Qualified : CounterVerdict::Qualifying;
+  }
+  [[nodiscard]] constexpr bool qualified() const { return in_a_row_ == kInARow; }
+  [[nodiscard]] constexpr bool heard() const { return heard_; }
+  friend constexpr bool operator==(const CounterCheck&, const CounterCheck&) = default;
+
+ private:
+  std::uint8_t last_ = 0;
+  std::uint8_t in_a_row_ = 0;
+  bool heard_ = false;
+};
+
+/// A CounterCheck with freshness: time since the last usable frame. Never heard is the same as lost.
+class Reception {
+ public:
+  /// True where the frame with this counter may be used; then it is fresh for `fresh_ms`.
+  constexpr bool accept(std::uint8_t counter, std::uint16_t fresh_ms) {
+    const bool usable = check_.accept(counter) == CounterVerdict::Qualified;
+    if (usable) fresh_.start(fresh_ms);
+    return usable;
+  }
+  constexpr void advance(std::uint16_t elapsed_ms) { fresh_.advance(elapsed_ms); }
+  constexpr void forget() { *this = {}; }
+  /// A usable frame came within its time.
+  [[nodiscard]] constexpr bool fresh() const { return fresh_.running() && check_.qualified(); }
+  [[nodiscard]] constexpr bool qualified() const { return check_.qualified(); }
+  [[nodiscard]] constexpr bool heard() const { return check_.heard(); }
+  friend constexpr bool operator==(const Reception&, const Reception&) = default;
+
+ private:
+  CounterCheck check_;
+  Countdown fresh_;
+};
+
+}  // namespace pinjaw::wire
