@@ -39,10 +39,10 @@ std::map<std::string, Rule> arrows() {
       inside = line == "```arrows";
       continue;
     }
-    const auto colon = line.find(" : ");
+    const auto colon = line.find(" :");
     if (!inside || colon == std::string::npos) continue;
     Rule rule;
-    std::string allowed = line.substr(colon + 3);
+    std::string allowed = line.substr(colon + 2);
     if (const auto bar = allowed.find('|'); bar != std::string::npos) {
       rule.portable = allowed.find("portable", bar) != std::string::npos;
       allowed.resize(bar);

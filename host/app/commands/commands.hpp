@@ -1,0 +1,17 @@
+#pragma once
+
+#include "host/app/context.hpp"
+
+/// One function a command: it declares the command's options and what happens when it is given.
+namespace pinjaw::app {
+
+void add_plan(CLI::App& app, Context& context);
+void add_planar(CLI::App& app, Context& context);
+void add_features(CLI::App& app, Context& context);
+void add_why(CLI::App& app, Context& context);
+void add_check(CLI::App& app, Context& context);
+
+/// All of them, in the order of the help.
+void add_commands(CLI::App& app, Context& context);
+
+}  // namespace pinjaw::app

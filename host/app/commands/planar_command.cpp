@@ -1,0 +1,57 @@
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "host/app/commands/commands.hpp"
+#include "host/config/read.hpp"
+#include "host/planner/plan/planar_json.hpp"
+#include "host/planner/planar/planar.hpp"
+
+namespace pinjaw::app {
+
+namespace {
+
+struct Options {
+  std::string profile;
+  std::string kit;
+  std::string output;
+  int threads = 0;
+};
+
+void run_planar(Context& context, const Options& options) {
+  const auto profile = config::read_profile(options.profile);
+  const auto kit = config::read_kit(options.kit);
+  base::Diagnostics mistakes;
+  if (!profile) mistakes.add(profile.error());
+  if (!kit) mistakes.add(kit.error());
+  if (!mistakes.empty()) return context.fail(mistakes, "nothing was planned");
+
+  const std::vector<model::Feature> features = model::features_of(*profile);
+  planner::PlanarOptions planar;
+  planar.outline = &*profile;
+  planar.threads = options.threads;
+  const planner::PlanarResult result = planner::plan_planar_fixtures(features, *kit, planar);
+  if (!context.write_result(options.output, planner::to_json(result.fixtures, features, *kit))) return;
+  const std::string summary = fmt::format("{} planar fixtures, each and its twin", result.fixtures.size());
+  if (options.output.empty() || options.output == "-") {
+    context.note(summary);
+  } else {
+    context.print(summary);
+  }
+  if (result.fixtures.empty()) context.exit_code = ExitCode::No;
+}
+
+}  // namespace
+
+void add_planar(CLI::App& app, Context& context) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("planar", "every planar fixture of a profile");
+  command->add_option("PROFILE", options->profile, "profile file")->required();
+  command->add_option("--kit", options->kit, "kit file")->required();
+  command->add_option("-o,--output", options->output, "JSON; without it to stdout")->type_name("FILE");
+  command->add_option("--threads", options->threads, "threads; 0: as many as there are")->check(CLI::Range(0, 1024));
+  command->callback([&context, options] { run_planar(context, *options); });
+}
+
+}  // namespace pinjaw::app

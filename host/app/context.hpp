@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "host/app/exit_code.hpp"
+#include "host/base/diagnostics.hpp"
+#include "host/base/expected.hpp"
+#include "host/planner/plan/plan.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace pinjaw::app {
+
+enum class ProgressMode { Auto, None, Json };
+
+/// What every command shares: the global options, and the only door to the terminal.
+/// Results go to stdout; progress, warnings and errors to stderr.
+class Context {
+ public:
+  std::string bus = "sim:";
+  std::string world;
+  bool json = false;
+  bool quiet = false;
+  ProgressMode progress = ProgressMode::Auto;
+  std::uint64_t seed = 1;
+  ExitCode exit_code = ExitCode::Done;
+
+  /// A line of the result.
+  void print(std::string_view text) const;
+  /// A remark on stderr; silent with --quiet.
+  void note(std::string_view text) const;
+  /// Reports why the command failed and sets the exit code.
+  void fail(ExitCode code, std::string_view message);
+  /// Reports every mistake of the input files; exit code 3.
+  void fail(const base::Diagnostics& mistakes, std::string_view consequence);
+
+  /// Writes the result whole to `path`, or to stdout where it is empty or "-". False, with exit code 3, where it
+  /// cannot be written.
+  bool write_result(const std::filesystem::path& path, std::string_view bytes);
+
+  /// Shows how far a plan has come: one live line on a terminal, JSON lines, or nothing.
+  [[nodiscard]] planner::ProgressSink progress_sink() const;
+};
+
+}  // namespace pinjaw::app

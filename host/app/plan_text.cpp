@@ -1,0 +1,96 @@
+#include "host/app/plan_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+#include <vector>
+
+namespace pinjaw::app {
+
+namespace {
+
+struct Phase {
+  const char* name;
+  const char* what;
+  std::int64_t count;
+};
+
+std::array<Phase, 7> phases(const planner::Funnel& funnel) {
+  return {{{"features", "edges that a pin can touch", funnel.features},
+           {"planar", "planar fixtures in form closure", funnel.planar},
+           {"heights", "with a height for every pin", funnel.heights},
+           {"loadable", "that load by closing the jaws", funnel.loadable},
+           {"not wedging", "that neither wedge nor jam", funnel.not_wedging},
+           {"resistable", "that some squeeze can hold", funnel.resistable},
+           {"strong", "that the usable force can hold", funnel.strong}}};
+}
+
+std::string reasons_text(const planner::Losses& losses, const std::string& phase) {
+  const auto found = losses.find(phase);
+  if (found == losses.end()) return {};
+  std::vector<std::pair<std::int64_t, std::string>> reasons;
+  for (const auto& [reason, count] : found->second) {
+    if (count > 0) reasons.emplace_back(-count, reason);
+  }
+  std::ranges::sort(reasons);
+  constexpr std::size_t kMost = 8;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(kMost, reasons.size()); ++i) {
+    text += fmt::format("            {:>9}  left out: {}\n", -reasons[i].first, reasons[i].second);
+  }
+  if (reasons.size() > kMost) {
+    std::int64_t rest = 0;
+    for (std::size_t i = kMost; i < reasons.size(); ++i) rest -= reasons[i].first;
+    text += fmt::format("            {:>9}  left out for {} more reasons\n", rest, reasons.size() - kMost);
+  }
+  return text;
+}
+
+std::string pins_text(const model::Design& design) {
+  std::string text;
+  for (const model::PinDesign& pin : design.pins) {
+    text += fmt::format(" {}-C{}-R{}", pin.hole.jaw == model::JawSide::Left ? 'L' : 'R', pin.hole.column, pin.hole.row);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string funnel_text(const planner::Funnel& funnel) {
+  std::string text;
+  for (const Phase& phase : phases(funnel)) {
+    text += fmt::format("{:<12}{:>9}  {}\n", phase.name, phase.count, phase.what);
+  }
+  return text;
+}
+
+std::string losses_text(const planner::Plan& plan) {
+  // a phase's losses stand before the count of what it leaves; the force phase's after the last line
+  const auto lines = phases(plan.funnel);
+  std::string text;
+  for (const Phase& phase : lines) {
+    if (phase.name == std::string_view("heights")) text += reasons_text(plan.losses, "heights");
+    if (phase.name == std::string_view("loadable")) text += reasons_text(plan.losses, "loading");
+    text += fmt::format("{:<12}{:>9}  {}\n", phase.name, phase.count, phase.what);
+    if (phase.name == std::string_view("features")) text += reasons_text(plan.losses, "features");
+  }
+  text += reasons_text(plan.losses, "force");
+  return text;
+}
+
+std::string designs_text(const planner::Plan& plan, std::size_t at_most) {
+  if (plan.designs.empty()) return "no design holds the part\n";
+  std::string text = fmt::format("{:<10} {:>5} {:>9} {:>9}  {:<12} pins\n", "design", "split", "squeeze N", "margin N",
+                                 "critical");
+  for (std::size_t i = 0; i < std::min(at_most, plan.designs.size()); ++i) {
+    const model::Design& design = plan.designs[i];
+    text += fmt::format("{:<10} {:>5} {:>9.1f} {:>9.1f}  {:<12}{}\n", design.id, model::to_string(design.split),
+                        design.squeeze.required_n, design.squeeze.margin_n, design.squeeze.critical, pins_text(design));
+  }
+  if (plan.designs.size() > at_most) text += fmt::format("… and {} more\n", plan.designs.size() - at_most);
+  return text;
+}
+
+}  // namespace pinjaw::app

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+
+#include "host/planner/plan/plan.hpp"
+
+/// What people read of a plan on a terminal.
+namespace pinjaw::app {
+
+/// One line a phase: how many fixtures are left after it.
+std::string funnel_text(const planner::Funnel& funnel);
+
+/// The funnel with the reasons of each loss, for `why`.
+std::string losses_text(const planner::Plan& plan);
+
+/// The best designs, one line each.
+std::string designs_text(const planner::Plan& plan, std::size_t at_most);
+
+}  // namespace pinjaw::app

@@ -1,0 +1,134 @@
+#include "host/planner/plan/plan_json.hpp"
+
+#include <numbers>
+
+#include "host/base/files.hpp"
+#include "host/base/json_fields.hpp"
+#include "host/planner/plan/json_values.hpp"
+
+namespace pinjaw::planner {
+
+namespace {
+
+using base::JsonField;
+using nlohmann::ordered_json;
+
+constexpr const char* kFormat = "pinjaw-plan/1";
+
+ordered_json funnel_json(const Funnel& funnel) {
+  return {{"features", funnel.features},         {"planar", funnel.planar},
+          {"heights", funnel.heights},           {"loadable", funnel.loadable},
+          {"not_wedging", funnel.not_wedging},   {"resistable", funnel.resistable},
+          {"strong", funnel.strong}};
+}
+
+Funnel read_funnel(const JsonField& field) {
+  return {field.whole("features"), field.whole("planar"),      field.whole("heights"), field.whole("loadable"),
+          field.whole("not_wedging"), field.whole("resistable"), field.whole("strong")};
+}
+
+ordered_json disturbances_json(const Plan& plan) {
+  ordered_json list = ordered_json::array();
+  for (const model::Disturbance& disturbance : plan.disturbances) {
+    ordered_json wrench = ordered_json::array();
+    for (int i = 0; i < 6; ++i) wrench.push_back(disturbance.wrench[i]);
+    list.push_back({{"name", disturbance.name}, {"wrench", wrench}});
+  }
+  return list;
+}
+
+ordered_json obstacles_json(const std::vector<model::Obstacle>& obstacles) {
+  ordered_json list = ordered_json::array();
+  for (const model::Obstacle& obstacle : obstacles) {
+    ordered_json entry = {{"file", obstacle.file.string()}, {"pose", pose_json(obstacle.pose)}};
+    entry["pose"]["z_mm"] = obstacle.z_mm;
+    list.push_back(std::move(entry));
+  }
+  return list;
+}
+
+std::vector<model::Obstacle> read_obstacles(const JsonField& field) {
+  std::vector<model::Obstacle> obstacles;
+  for (const JsonField& entry : field.list()) {
+    const JsonField pose = entry.at("pose");
+    obstacles.push_back({entry.text("file"), read_pose(pose), pose.number("z_mm")});
+  }
+  return obstacles;
+}
+
+std::vector<model::Disturbance> read_disturbances(const JsonField& field) {
+  std::vector<model::Disturbance> disturbances;
+  for (const JsonField& entry : field.list()) {
+    model::Disturbance disturbance;
+    disturbance.name = entry.text("name");
+    const std::vector<double> wrench = entry.at("wrench").numbers(6);
+    for (int i = 0; i < 6; ++i) disturbance.wrench[i] = wrench[static_cast<std::size_t>(i)];
+    disturbances.push_back(std::move(disturbance));
+  }
+  return disturbances;
+}
+
+}  // namespace
+
+std::string to_json(const Plan& plan) {
+  ordered_json document;
+  document["format"] = kFormat;
+  document["task"] = plan.task;
+  document["part"] = {{"file", plan.part.file},
+                      {"sha256", plan.part.sha256},
+                      {"up", vector_json(plan.part.up)},
+                      {"mass_kg", plan.part.mass_kg},
+                      {"centroid_mm", vector_json(plan.part.centroid_mm)}};
+  document["kit"] = kit_json(plan.kit);
+  document["side"] = plan.side == model::Side::Below ? "below" : "above";
+  document["loading"] = plan.loading_2d ? "2d" : "3d";
+  if (!plan.obstacles.empty()) document["obstacles"] = obstacles_json(plan.obstacles);
+  if (plan.attached) document["attached"] = {{"file", plan.attached->file.string()}, {"base", plan.attached->base}};
+  document["friction"] = {{"mu", plan.friction},
+                          {"model", plan.friction_model == model::FrictionModel::Pyramid ? "pyramid" : "cone"}};
+  document["random"] = plan.random_algorithm;
+  document["disturbances"] = disturbances_json(plan);
+  document["funnel"] = funnel_json(plan.funnel);
+  document["losses"] = plan.losses;
+  document["designs"] = ordered_json::array();
+  for (const model::Design& design : plan.designs) document["designs"].push_back(design_json(design));
+  return document.dump(1) + "\n";
+}
+
+base::Checked<Plan> read_plan(const std::filesystem::path& path) {
+  const std::string name = path.string();
+  const auto bytes = base::read_file(path);
+  if (!bytes) return tl::unexpected(base::Diagnostics({{name, 0, 0}, "", bytes.error().message}));
+  const auto document = base::parse_json(*bytes, name);
+  if (!document) return tl::unexpected(document.error());
+
+  base::Diagnostics mistakes;
+  const JsonField top(&*document, "", &name, &mistakes);
+  if (top.text("format") != kFormat) {
+    return tl::unexpected(base::Diagnostics({{name, 0, 0}, "format", std::string("expected ") + kFormat}));
+  }
+  Plan plan;
+  plan.task = top.text("task");
+  const JsonField part = top.at("part");
+  plan.part = {part.text("file"), part.text("sha256"), read_vector3(part.at("up")), part.number("mass_kg"),
+               read_vector3(part.at("centroid_mm"))};
+  plan.kit = read_kit_json(top.at("kit"));
+  plan.side = top.at("side").one_of({"below", "above"}) == 0 ? model::Side::Below : model::Side::Above;
+  plan.loading_2d = top.at("loading").one_of({"3d", "2d"}) == 1;
+  if (top.has("obstacles")) plan.obstacles = read_obstacles(top.at("obstacles"));
+  if (top.has("attached")) {
+    plan.attached = model::Attached{top.at("attached").text("file"), top.at("attached").text("base")};
+  }
+  plan.friction = top.at("friction").number("mu");
+  plan.friction_model = top.at("friction").at("model").one_of({"pyramid", "cone"}) == 0
+                            ? model::FrictionModel::Pyramid
+                            : model::FrictionModel::Cone;
+  plan.random_algorithm = top.text("random");
+  plan.disturbances = read_disturbances(top.at("disturbances"));
+  plan.funnel = read_funnel(top.at("funnel"));
+  for (const JsonField& design : top.at("designs").list()) plan.designs.push_back(read_design(design));
+  if (!mistakes.empty()) return tl::unexpected(mistakes);
+  return plan;
+}
+
+}  // namespace pinjaw::planner
