@@ -30,11 +30,12 @@ enum class Overlap {
 double plan_distance_mm(const Sweep& a, const Sweep& b);
 double plan_distance_mm(const Sweep& a, const Rectangle& b);
 
-/// Whether two solids overlap (libccd, portal refinement, at most kOverlapIterations rounds). Solids that only touch,
-/// or that overlap by less than kOverlapToleranceMm, may be reported either way.
+/// Whether two solids overlap (libccd's GJK: of libccd's two algorithms the one that bounds its iterations).
+/// Apart is only said with a separating plane that was checked. Solids that only touch may be reported either
+/// way.
 Overlap overlap(const Solid& a, const Solid& b);
 
-inline constexpr int kOverlapIterations = 200;        ///< chosen: 10 times what the hardest random case took
-inline constexpr double kOverlapToleranceMm = 1e-4;  ///< of libccd's portal
+inline constexpr unsigned long kOverlapIterations =
+    200;  ///< chosen: several times what the hardest random case took
 
 }  // namespace pinjaw::geometry

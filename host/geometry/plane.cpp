@@ -25,7 +25,9 @@ Vector2d tangent_at(const Curve& curve, double along_mm) {
   return direction(arc.from_rad + along_mm / arc.radius_mm + std::numbers::pi / 2);
 }
 
-Vector2d direction(double angle_rad) { return {std::cos(angle_rad), std::sin(angle_rad)}; }
+Vector2d direction(double angle_rad) {
+  return {std::cos(angle_rad), std::sin(angle_rad)};
+}
 
 double wrapped_rad(double angle_rad) {
   constexpr double kTurn = 2 * std::numbers::pi;
@@ -40,7 +42,9 @@ Vector2d Pose2::turned(const Vector2d& v) const {
   return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};
 }
 
-Vector2d Pose2::operator*(const Vector2d& p_mm) const { return turned(p_mm) + t_mm; }
+Vector2d Pose2::operator*(const Vector2d& p_mm) const {
+  return turned(p_mm) + t_mm;
+}
 
 Pose2 Pose2::operator*(const Pose2& other) const {
   return {theta_rad + other.theta_rad, turned(other.t_mm) + t_mm};

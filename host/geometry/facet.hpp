@@ -1,0 +1,74 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+
+#include "host/geometry/region.hpp"
+
+namespace pinjaw::geometry {
+
+/// One triangle of a surface, ready for queries.
+struct Facet {
+  std::array<Vector3d, 3> p_mm;
+  Vector3d normal = Vector3d::Zero();  ///< unit, outward; zero where the triangle has no area
+  int triangle = 0;                    ///< its place in the mesh
+
+  [[nodiscard]] Box box() const {
+    Box box;
+    for (const Vector3d& p : p_mm) box.include(p);
+    return box;
+  }
+};
+
+/// |n_z| under which a facet counts as upright: its z extremes over any region lie on its edges to within
+/// rounding.
+inline constexpr double kUprightNormal = 1e-12;
+
+/// Whether (x, y) lies in the facet's shadow, its outline included.
+inline bool shadow_contains(const Facet& facet, const Vector2d& q_mm) {
+  bool left = false;
+  bool right = false;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vector2d a_mm = facet.p_mm[i].head<2>();
+    const Vector2d b_mm = facet.p_mm[(i + 1) % 3].head<2>();
+    const double side = (b_mm - a_mm).x() * (q_mm - a_mm).y() - (b_mm - a_mm).y() * (q_mm - a_mm).x();
+    left |= side > 0;
+    right |= side < 0;
+  }
+  return !(left && right);
+}
+
+/// The z range of the facet over the region; empty where they do not meet.
+///
+/// The facet over the region is a convex set, so its z values are one interval, and its extremes lie on the
+/// facet's edges, cut to the region, or at the region's own extreme point along the facet's slope where that
+/// lies inside.
+template <class Region>
+Interval z_range_over(const Facet& facet, const Region& region) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Interval z{kInfinity, -kInfinity};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vector3d& a_mm = facet.p_mm[i];
+    const Vector3d& b_mm = facet.p_mm[(i + 1) % 3];
+    const Interval t = region.clip(a_mm.head<2>(), b_mm.head<2>());
+    if (t.lo > t.hi) continue;
+    const double z1 = t.lo == 1 ? b_mm.z() : a_mm.z() + t.lo * (b_mm.z() - a_mm.z());
+    const double z2 = t.hi == 1 ? b_mm.z() : a_mm.z() + t.hi * (b_mm.z() - a_mm.z());
+    z.lo = std::min({z.lo, z1, z2});
+    z.hi = std::max({z.hi, z1, z2});
+  }
+  if (std::abs(facet.normal.z()) < kUprightNormal) return z;
+  const Vector2d slope = -facet.normal.head<2>() / facet.normal.z();
+  const auto include = [&](const Vector2d& q_mm) {
+    if (!shadow_contains(facet, q_mm)) return;
+    const auto [low, high] = std::minmax({facet.p_mm[0].z(), facet.p_mm[1].z(), facet.p_mm[2].z()});
+    const double z_mm = facet.p_mm[0].z() + slope.dot(q_mm - facet.p_mm[0].head<2>());
+    z.lo = std::min(z.lo, std::clamp(z_mm, low, high));
+    z.hi = std::max(z.hi, std::clamp(z_mm, low, high));
+  };
+  include(region.support(-slope));
+  include(region.support(slope));
+  return z;
+}
+
+}  // namespace pinjaw::geometry

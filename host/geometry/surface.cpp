@@ -1,0 +1,192 @@
+#include "host/geometry/surface.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "host/geometry/bvh.hpp"
+#include "host/geometry/facet.hpp"
+#include "host/geometry/ray.hpp"
+
+namespace pinjaw::geometry {
+
+struct Surface::Index {
+  TriangleMesh mesh;
+  Box box;
+  std::vector<Facet> facets;  ///< in the order of the tree's leaves
+  Bvh tree{{}};
+
+  explicit Index(TriangleMesh source);
+
+  /// Calls leaf(facet) for facets whose boxes may meet the region and the slab [slab.lo, slab.hi]; `slab` may
+  /// shrink while the walk goes on. Stops where leaf returns true.
+  template <class Region, class First, class Leaf>
+  void visit(const Region& region, const Slab& slab, First&& first, Leaf&& leaf) const;
+  [[nodiscard]] Hit hit_of(const Facet& facet, double distance_mm, const Vector3d& p_mm) const;
+  template <class Region>
+  [[nodiscard]] std::pair<double, const Facet*> lowest(const Region& region, Slab slab) const;
+  template <class Region>
+  [[nodiscard]] double highest(const Region& region, Slab slab) const;
+  template <class Region>
+  [[nodiscard]] bool meets(const Region& region, const Slab& slab) const;
+};
+
+namespace {
+
+Vector3d unit_or_zero(const Vector3d& v) {
+  const double length = v.norm();
+  return length > 0 ? Vector3d(v / length) : Vector3d(Vector3d::Zero());
+}
+
+/// `z` cut to the slab; empty where nothing is left.
+Interval within(const Interval& z, const Slab& slab) {
+  return {std::max(z.lo, slab.lo_mm), std::min(z.hi, slab.hi_mm)};
+}
+
+constexpr auto kLowerFirst = [](const Bvh::Node& a, const Bvh::Node& b) {
+  return a.box.lo.z() < b.box.lo.z();
+};
+constexpr auto kHigherFirst = [](const Bvh::Node& a, const Bvh::Node& b) {
+  return a.box.hi.z() > b.box.hi.z();
+};
+
+}  // namespace
+
+Surface::Index::Index(TriangleMesh source) : mesh(std::move(source)) {
+  std::vector<Facet> given;
+  std::vector<Box> boxes;
+  given.reserve(mesh.triangles.size());
+  boxes.reserve(mesh.triangles.size());
+  for (const auto& corners : mesh.triangles) {
+    Facet facet;
+    for (std::size_t i = 0; i < 3; ++i)
+      facet.p_mm[i] = mesh.vertices_mm[static_cast<std::size_t>(corners[i])];
+    facet.normal = unit_or_zero((facet.p_mm[1] - facet.p_mm[0]).cross(facet.p_mm[2] - facet.p_mm[0]));
+    facet.triangle = static_cast<int>(given.size());
+    boxes.push_back(facet.box());
+    box.include(boxes.back());
+    given.push_back(facet);
+  }
+  tree = Bvh(boxes);
+  facets.reserve(given.size());
+  for (const int i : tree.order()) facets.push_back(given[static_cast<std::size_t>(i)]);
+}
+
+template <class Region, class First, class Leaf>
+void Surface::Index::visit(const Region& region, const Slab& slab, First&& first, Leaf&& leaf) const {
+  const auto outside = [&](const Box& candidate) {
+    return candidate.lo.z() > slab.hi_mm || candidate.hi.z() < slab.lo_mm || !region.may_meet(candidate);
+  };
+  tree.walk([&](const Bvh::Node& node) { return outside(node.box); }, first,
+            [&](const Bvh::Node& node) {
+              for (std::int32_t i = node.first; i < node.first + node.count; ++i) {
+                const Facet& facet = facets[static_cast<std::size_t>(i)];
+                if (!outside(facet.box()) && leaf(facet)) return true;
+              }
+              return false;
+            });
+}
+
+Hit Surface::Index::hit_of(const Facet& facet, double distance_mm, const Vector3d& p_mm) const {
+  const auto at = static_cast<std::size_t>(facet.triangle);
+  return {distance_mm, p_mm, facet.normal, facet.triangle, at < mesh.face_of.size() ? mesh.face_of[at] : 0};
+}
+
+template <class Region>
+std::pair<double, const Facet*> Surface::Index::lowest(const Region& region, Slab slab) const {
+  std::pair<double, const Facet*> best{std::numeric_limits<double>::infinity(), nullptr};
+  visit(region, slab, kLowerFirst, [&](const Facet& facet) {
+    const Interval z = within(z_range_over(facet, region), slab);
+    if (z.lo > z.hi || z.lo > best.first) return false;
+    if (z.lo == best.first && best.second != nullptr && facet.triangle > best.second->triangle) return false;
+    best = {z.lo, &facet};
+    slab.hi_mm = z.lo;
+    return false;
+  });
+  return best;
+}
+
+template <class Region>
+double Surface::Index::highest(const Region& region, Slab slab) const {
+  double best = -std::numeric_limits<double>::infinity();
+  const double ceiling_mm = slab.hi_mm;
+  visit(region, slab, kHigherFirst, [&](const Facet& facet) {
+    const Interval z = within(z_range_over(facet, region), slab);
+    if (z.lo > z.hi || z.hi < best) return false;
+    best = z.hi;
+    slab.lo_mm = z.hi;
+    return best >= ceiling_mm;
+  });
+  return best;
+}
+
+template <class Region>
+bool Surface::Index::meets(const Region& region, const Slab& slab) const {
+  bool met = false;
+  visit(region, slab, kLowerFirst, [&](const Facet& facet) {
+    const Interval z = within(z_range_over(facet, region), slab);
+    met = z.lo <= z.hi;
+    return met;
+  });
+  return met;
+}
+
+Surface::Surface(TriangleMesh mesh) : index_(std::make_shared<const Index>(std::move(mesh))) {}
+
+double Surface::lowest_z_mm(const Sweep& region, const Slab& slab) const {
+  return index_->lowest(Stadium(region), slab).first;
+}
+
+double Surface::highest_z_mm(const Sweep& region, const Slab& slab) const {
+  return index_->highest(Stadium(region), slab);
+}
+
+bool Surface::meets(const Sweep& region, const Slab& slab) const {
+  return index_->meets(Stadium(region), slab);
+}
+
+bool Surface::meets(const Rectangle& region, const Slab& slab) const {
+  return index_->meets(Oblong(region), slab);
+}
+
+std::optional<Hit> Surface::lowest_above(const Vector2d& p_mm) const {
+  const auto [z_mm, facet] = index_->lowest(Stadium({p_mm, p_mm, 0}), {});
+  if (facet == nullptr) return std::nullopt;
+  return index_->hit_of(*facet, z_mm - index_->box.lo.z(), {p_mm.x(), p_mm.y(), z_mm});
+}
+
+std::optional<Hit> Surface::first_hit(const Ray& ray) const {
+  const RayTest test(ray);
+  double nearest_mm = std::numeric_limits<double>::infinity();
+  const Facet* hit = nullptr;
+  index_->tree.walk(
+      [&](const Bvh::Node& node) { return test.entry_mm(node.box) > nearest_mm; },
+      [&](const Bvh::Node& a, const Bvh::Node& b) { return test.entry_mm(a.box) < test.entry_mm(b.box); },
+      [&](const Bvh::Node& node) {
+        for (std::int32_t i = node.first; i < node.first + node.count; ++i) {
+          const Facet& facet = index_->facets[static_cast<std::size_t>(i)];
+          const auto distance_mm = test.distance_mm(facet);
+          if (!distance_mm || *distance_mm > nearest_mm) continue;
+          if (*distance_mm == nearest_mm && hit != nullptr && facet.triangle > hit->triangle) continue;
+          nearest_mm = *distance_mm;
+          hit = &facet;
+        }
+        return false;
+      });
+  if (hit == nullptr) return std::nullopt;
+  return index_->hit_of(*hit, nearest_mm, ray.origin_mm + nearest_mm * ray.direction);
+}
+
+const TriangleMesh& Surface::mesh() const {
+  return index_->mesh;
+}
+Interval Surface::x_range_mm() const {
+  return {index_->box.lo.x(), index_->box.hi.x()};
+}
+Interval Surface::y_range_mm() const {
+  return {index_->box.lo.y(), index_->box.hi.y()};
+}
+Interval Surface::z_range_mm() const {
+  return {index_->box.lo.z(), index_->box.hi.z()};
+}
+
+}  // namespace pinjaw::geometry
