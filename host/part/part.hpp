@@ -69,6 +69,10 @@ base::Expected<Part> read_part(const model::PartSource& source, const Selection&
 /// The part as its gripper sees it: itself from below; from above turned by pi about y (DESIGN 2, BB 3.6).
 Part turned(const Part& part, model::Side side);
 
+/// A curve of the plan view seen from behind: mirrored across the y axis (`axis` 0: x changes sign) or the x
+/// axis (1: y changes sign). Segments swap their ends, so material on the left stays on the left.
+geometry::Curve mirrored(const geometry::Curve& curve, int axis);
+
 /// The rotation that takes the direction `up` to +z by the shortest way; up = -z turns by pi about x (DESIGN
 /// 2).
 Eigen::Matrix3d upright_rotation(const Vector3d& up);

@@ -12,9 +12,7 @@ using Eigen::Matrix3d;
 Curve3 rotated(const Curve3& curve, const Matrix3d& rotation);
 geometry::TriangleMesh rotated(geometry::TriangleMesh mesh, const Matrix3d& rotation);
 
-/// A curve of the plan view seen from behind: mirrored across the y axis (`axis` 0: x changes sign) or the x
-/// axis (1: y changes sign). Segments swap their ends, so material on the left stays on the left.
-geometry::Curve mirrored(const geometry::Curve& curve, int axis);
+/// Each edge of the profile mirrored in place, so that its number stays.
 model::Profile mirrored(model::Profile profile, int axis);
 
 /// The upright ones of `faces` in plan, as far as `mesh` reaches; both in the same frame as `rotation` leaves

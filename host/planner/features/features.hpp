@@ -19,6 +19,7 @@ struct FeatureCounts {
   int left_out_freeform = 0;  ///< neither line nor circle nor ellipse
   int edgelets = 0;           ///< pieces between intersections, duplicates once
   int visible = 0;            ///< edgelets with some length that jumps by the engagement
+  int too_short = 0;          ///< joined stretches shorter than eps, left out
   int features = 0;           ///< after adjacent survivors are joined
   int reachable = 0;          ///< features with room for a closed pin somewhere
   friend bool operator==(const FeatureCounts&, const FeatureCounts&) = default;
