@@ -1,5 +1,6 @@
 #include "host/geometry/surface.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <utility>
 
