@@ -44,7 +44,8 @@ void run_features(Context& context, const Options& options) {
   const bool drawing = options.output.ends_with(".svg");
   std::string bytes;
   if (drawing) {
-    bytes = report::features_svg(task->name, found.features, planner::outlines(scene->turned));
+    bytes = report::features_svg({task->name, found.features, planner::outlines(scene->turned).from_below,
+                                  task->kit.pins.radius_mm});
   } else {
     bytes = planner::features_json(task->name, found.features, counts);
   }
