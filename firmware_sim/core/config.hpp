@@ -26,7 +26,10 @@ struct Config {
   std::int32_t pressure_max_mbar = 6000;      ///< highest set point the regulator takes
   std::int32_t supply_low_mbar = 4500;        ///< chosen: below, fault 0x7010
   std::int32_t sensor_disagreement_mbar = 300;  ///< two sensors of +-1 % of 10 bar, and noise
+  std::int32_t check_cracking_mbar = 200;       ///< section 3: the check valve takes this off the regulator's outlet
   std::int32_t pre_vent_mbar = 500;           ///< section 3: the open side's pressure before the jaws may close
+
+  std::uint32_t serial = 0;
 
   std::int32_t ramp_dn_per_ms = 5;     ///< section 3: at most 0.5 N/ms
   std::int32_t hold_band_dn = 10;      ///< chosen: half the dead band while holding, several times sensor noise

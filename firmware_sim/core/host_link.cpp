@@ -1,0 +1,34 @@
+#include "firmware_sim/core/host_link.hpp"
+
+#include <utility>
+
+namespace pinjaw::core {
+
+HostLink::Host& HostLink::slot_for(std::uint16_t epoch) {
+  for (Host& host : hosts_) {
+    if (host.heard.running() && host.epoch == epoch) return host;
+  }
+  Host& free = hosts_[0].heard.running() ? hosts_[1] : hosts_[0];
+  free = Host{};
+  free.epoch = epoch;
+  return free;
+}
+
+void HostLink::hear(const wire::Received<wire::HostHeartbeat>& heartbeat, std::uint8_t node) {
+  Host& host = slot_for(heartbeat.message.epoch);
+  host.heard.start(wire::kHostFresh_ms);
+  if (host.reception.accept(heartbeat.label.counter, wire::kHostFresh_ms)) {
+    host.permit = heartbeat.message.permits(node);
+  }
+}
+
+void HostLink::advance(std::uint16_t elapsed_ms) {
+  for (Host& host : hosts_) {
+    host.reception.advance(elapsed_ms);
+    host.heard.advance(elapsed_ms);
+    if (!host.heard.running()) host = Host{};
+  }
+  if (!hosts_[0].heard.running() && hosts_[1].heard.running()) std::swap(hosts_[0], hosts_[1]);
+}
+
+}  // namespace pinjaw::core
