@@ -23,6 +23,7 @@ struct AirParameters {
   Restriction meter_out{0.02 * kDm3PerSecondBar, 0.3};  // the same: the open chamber's way out while closing
   Restriction open_fill{0.05 * kDm3PerSecondBar, 0.3};  // as relax
   double check_cracking_pa = 0.2e5;                     // the same: pilot-operated check valve
+  Restriction close_leak{0, 0.3};                       ///< this specimen's, close chamber to the room
   double relief_pa = 0;                                 ///< gauge, of the close chamber
   Restriction relief{0.3 * kDm3PerSecondBar, 0.3};      // SY3000-class seat, wide open
   double relief_span = 0.03;                            // chosen: wide open 3 % above where it starts

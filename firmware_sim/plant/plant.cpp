@@ -20,7 +20,8 @@ void step_spool(const SpoolParameters& spool, const Inputs& inputs, double dt_s,
 
 /// Mass flow into the close chamber, kg/s.
 double close_flow(const AirParameters& air, const Inputs& inputs, const State& state) {
-  double flow = -mass_flow(inputs.faults.close_leak, state.close_pa, kAtmosphere_Pa);
+  double flow = -mass_flow(inputs.faults.close_leak, state.close_pa, kAtmosphere_Pa) -
+                mass_flow(air.close_leak, state.close_pa, kAtmosphere_Pa);
   const double over_pa = state.close_pa - kAtmosphere_Pa - air.relief_pa;
   if (over_pa > 0.0) {
     Restriction relief = air.relief;

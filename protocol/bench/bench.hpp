@@ -29,7 +29,8 @@ struct Place {
   std::vector<Grasp> grasps;  ///< one per station that will ever grip this part
 };
 
-/// The part is taken out by hand. Refused where a jaw still squeezes it.
+/// A hand takes hold of the part, which is gone as soon as no jaw presses on it: at once on a passive station, so
+/// let that be released first. Refused where the station does not touch it.
 struct Remove {
   int from = 0;
 };
