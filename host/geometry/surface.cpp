@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "host/geometry/bvh.hpp"
@@ -160,7 +161,10 @@ std::optional<Hit> Surface::first_hit(const Ray& ray) const {
   double nearest_mm = std::numeric_limits<double>::infinity();
   const Facet* hit = nullptr;
   index_->tree.walk(
-      [&](const Bvh::Node& node) { return test.entry_mm(node.box) > nearest_mm; },
+      [&](const Bvh::Node& node) {
+        const double entry_mm = test.entry_mm(node.box);
+        return entry_mm > nearest_mm || !std::isfinite(entry_mm);
+      },
       [&](const Bvh::Node& a, const Bvh::Node& b) { return test.entry_mm(a.box) < test.entry_mm(b.box); },
       [&](const Bvh::Node& node) {
         for (std::int32_t i = node.first; i < node.first + node.count; ++i) {
