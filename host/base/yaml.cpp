@@ -205,6 +205,11 @@ double YamlMap::number_or(std::string_view key, const NumberRule& rule, double o
   return value->number(rule).value_or(std::nan(""));
 }
 
+int YamlMap::whole(std::string_view key, const WholeRule& rule) {
+  const std::optional<YamlValue> value = require(key);
+  return static_cast<int>((value ? value->whole(rule) : std::nullopt).value_or(0));
+}
+
 std::string YamlMap::text(std::string_view key, std::string_view what) {
   const std::optional<YamlValue> value = require(key);
   return (value ? value->text(what) : std::nullopt).value_or("");
@@ -215,6 +220,12 @@ std::vector<std::string> YamlMap::keys() const {
   if (node_ == nullptr) return keys;
   for (const YamlEntry& entry : node_->entries) keys.push_back(entry.key);
   return keys;
+}
+
+void YamlMap::mistake_at(std::string_view key, std::string message) const {
+  const YamlEntry* entry = entry_of(node_, key);
+  if (entry == nullptr) return mistake(std::move(message));
+  mistakes_->add({*file_, entry->value.line, entry->value.column}, path_of(key), std::move(message));
 }
 
 void YamlMap::mistake_at_key(std::string_view key, std::string message) const {
@@ -271,6 +282,10 @@ YamlFile& YamlFile::operator=(YamlFile&&) noexcept = default;
 YamlMap YamlFile::top() {
   const YamlValue value(&content_->root, "", &content_->mistakes, &content_->name);
   if (content_->parsed) return value.map("settings (key: value)");
+  return no_map();
+}
+
+YamlMap YamlFile::no_map() {
   return {nullptr, "", &content_->mistakes, &content_->name};
 }
 

@@ -104,11 +104,15 @@ class YamlMap {
   /// that rules between settings stay silent about it.
   [[nodiscard]] double number(std::string_view key, const NumberRule& rule);
   [[nodiscard]] double number_or(std::string_view key, const NumberRule& rule, double otherwise);
+  /// A whole number; 0 where it is missing or wrong (which is reported).
+  [[nodiscard]] int whole(std::string_view key, const WholeRule& rule);
   [[nodiscard]] std::string text(std::string_view key, std::string_view what);
 
   /// The keys in the order of the file.
   [[nodiscard]] std::vector<std::string> keys() const;
-  /// Place and path of a key that is there (for mistakes about the key itself).
+  /// Records a mistake at the value of `key`, or at the mapping where that is not given.
+  void mistake_at(std::string_view key, std::string message) const;
+  /// Records a mistake at the word `key` itself.
   void mistake_at_key(std::string_view key, std::string message) const;
   /// Records a mistake at the mapping itself.
   void mistake(std::string message) const;
@@ -146,6 +150,8 @@ class YamlFile {
 
   /// The top mapping; absent (`present()` false) where parsing failed or the top is something else.
   [[nodiscard]] YamlMap top();
+  /// An absent mapping: whatever is asked of it is neither there nor missing.
+  [[nodiscard]] YamlMap no_map();
   [[nodiscard]] const std::string& bytes() const;
   [[nodiscard]] const std::string& name() const;
   [[nodiscard]] Diagnostics& mistakes();

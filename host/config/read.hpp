@@ -10,20 +10,21 @@
 #include "host/model/sequence.hpp"
 #include "host/model/task.hpp"
 
-/// Files people write (YAML, or JSON, which is YAML) into model values. Every reader returns the whole value, or
-/// every mistake of the file and of the files it names, each with file:line:column and key path. Relative paths
-/// inside a file start at the folder that holds it.
+/// Files people write (YAML, or JSON, which is YAML) into model values. Every reader returns the whole value,
+/// or every mistake of the file and of the files it names, each with file:line:column and key path. Relative
+/// paths inside a file start at the folder that holds it.
 namespace pinjaw::config {
 
 /// A value of the model, or all the mistakes in its files.
 template <class T>
 using Read = base::Checked<T>;
 
-/// A pin kit. Checks what one kit can get wrong by itself: overlapping pins, protrusion that would reach the other
-/// gripper's plate (DESIGN 3.1 no. 8), empty ranges.
+/// A pin kit. Checks what one kit can get wrong by itself: overlapping pins, protrusion that would reach the
+/// other gripper's plate (DESIGN 3.1 no. 8), empty ranges.
 Read<model::Kit> read_kit(const std::filesystem::path& path);
 
-/// A profile part. Loops must close, not cross or touch, the first counter-clockwise, the others clockwise inside it.
+/// A profile part. Loops must close, not cross or touch, the first counter-clockwise, the others clockwise
+/// inside it.
 Read<model::Profile> read_profile(const std::filesystem::path& path);
 
 /// A planning job with its kit, material and (for a profile part) its profile.
