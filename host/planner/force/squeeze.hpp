@@ -12,16 +12,17 @@
 namespace pinjaw::planner {
 
 /// The least squeeze force that can balance a wrench (BB 3.5.2): the sum over both jaws along the closing axis. Below 0
-/// where the wrench itself closes the jaws (possible only for a negative-cost grasp or a wrench pushing inwards).
+/// only for a grasp that jams.
 struct Required {
   double force_n = 0;
   double gap_n = 0;  ///< force_n is at most this above the true least force (0: exact to rounding)
 };
 
-/// No squeeze, however large, balances the wrench.
+/// No squeeze, however large, balances the wrench (for the cone: none under a billion times the wrench).
 struct Unresistable {};
 
-/// Some internal force has a negative squeeze: there is no least one. Never for a grasp that does not jam.
+/// Some internal force has a negative squeeze: there is no least one. Never for a grasp that does not jam. With the
+/// cone, also the answer for every grasp that jams: its certificate does not cover those.
 struct Unbounded {};
 
 using SqueezeOutcome = std::variant<Required, Unresistable, Unbounded>;
