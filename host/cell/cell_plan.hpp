@@ -7,22 +7,16 @@
 #include "host/base/expected.hpp"
 #include "host/model/cell.hpp"
 #include "host/model/design.hpp"
+#include "host/planner/interference/adjustment.hpp"
 #include "host/planner/plan/plan.hpp"
 
 namespace pinjaw::cell {
-
-/// Where a station's frame stands in the handoff frame (DESIGN 2), the same for all its handoffs.
-struct Adjustment {
-  double theta_rad = 0;
-  double x_mm = 0;
-  double y_mm = 0;
-};
 
 /// One station of a cell design: its pins and how the station is adjusted.
 struct StationDesign {
   std::string station;
   model::Design design;  ///< of a pallet: three pins, squeeze all 0
-  Adjustment adjust;
+  planner::Adjustment adjust;
 };
 
 /// One design for each station, every handoff of the cell free of interference.
