@@ -33,14 +33,17 @@ class NodeView {
   std::uint64_t states_heard = 0;         ///< STATE frames taken
   std::uint64_t discarded = 0;            ///< repeated or out of order
 
-  /// Each takes a checked message at `now_us`; repeats and jumps of the counter are discarded.
+  /// Each takes a checked message; repeats and jumps of the counter are discarded.
   void take(const wire::Received<wire::NodeState>& received, std::int64_t now_us);
-  void take(const wire::Received<wire::Force>& received, std::int64_t now_us);
-  void take(const wire::Received<wire::Custody>& received, std::int64_t now_us);
-  void take(const wire::Received<wire::FaultReport>& received, std::int64_t now_us);
-  void take(const wire::Received<wire::LayoutStatus>& received, std::int64_t now_us);
-  void take(const wire::Received<wire::Pneumatics>& received, std::int64_t now_us);
-  void take(const wire::Received<wire::Identity>& received, std::int64_t now_us);
+  void take(const wire::Received<wire::Force>& received);
+  void take(const wire::Received<wire::Custody>& received);
+  void take(const wire::Received<wire::FaultReport>& received);
+  void take(const wire::Received<wire::LayoutStatus>& received);
+  void take(const wire::Received<wire::Pneumatics>& received);
+  void take(const wire::Received<wire::Identity>& received);
+
+  /// Until it is reported again.
+  void forget_fault(wire::FaultCode code);
 
  private:
   bool in_order(wire::MessageType type, std::uint8_t counter);
