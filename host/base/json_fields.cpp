@@ -103,7 +103,7 @@ std::size_t JsonField::one_of(const std::vector<std::string>& words) const {
 }
 
 void JsonField::mistake(std::string message) const {
-  mistakes_->add(Diagnostic{{*file_, 0, 0}, path_, std::move(message)});
+  mistakes_->add({*file_, 0, 0}, path_, std::move(message));
 }
 
 void JsonField::expected(std::string_view what) const {

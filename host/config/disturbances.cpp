@@ -127,7 +127,7 @@ model::DisturbanceSource read_mapping(const std::string& kind, YamlMap& map) {
 class Names {
  public:
   std::string given(const YamlValue& value) {
-    const std::string name = value.text("a name").value_or("");
+    std::string name = value.text("a name").value_or("");
     const auto [first, is_new] = lines_.emplace(name, value.place().line);
     if (!is_new && !name.empty()) {
       value.mistake(fmt::format("\"{}\" names another disturbance, in line {}", name, first->second));
@@ -154,8 +154,8 @@ struct Entry {
 };
 
 std::optional<Entry> read_entry(const YamlValue& item, Names& names) {
-  static const std::vector<std::string> kKinds = {"gravity", "acceleration", "spray", "force", "wrench"};
-  const auto choice = only_choice(item, "a disturbance {KIND: {...}}", kKinds);
+  static const std::vector<std::string> known_kinds = {"gravity", "acceleration", "spray", "force", "wrench"};
+  const auto choice = only_choice(item, "a disturbance {KIND: {...}}", known_kinds);
   if (!choice) return {};
   Entry entry{choice->value, choice->word, false, {}};
   if (choice->word == "gravity" && choice->value.is_list()) {

@@ -92,12 +92,12 @@ std::optional<Eigen::Vector2d> point2(const YamlValue& value) {
 
 YamlMap top_of(YamlFile& file, const std::string& kind) {
   // A kind's file may name files of the kinds after it, never of those before it.
-  static const std::array<std::string, 7> kKinds = {"sequence", "cell", "controller", "task",
-                                                    "profile",  "kit",  "materials"};
+  static const std::array<std::string, 7> kinds = {"sequence", "cell", "controller", "task",
+                                                   "profile",  "kit",  "materials"};
   YamlMap top = file.top();
   const auto found =
-      std::find_if(kKinds.begin(), kKinds.end(), [&](const auto& word) { return top.has(word); });
-  if (found == kKinds.end() || *found == kind) return top;
+      std::find_if(kinds.begin(), kinds.end(), [&](const auto& word) { return top.has(word); });
+  if (found == kinds.end() || *found == kind) return top;
   top.mistake_at_key(*found, fmt::format("expected a file that describes a {}, found a {}", kind, *found));
   return file.no_map();
 }

@@ -91,12 +91,12 @@ base::Checked<Materials> read_materials(const std::filesystem::path& path) {
 }
 
 const Materials& built_in_materials() {
-  static const Materials kTable = [] {
-    base::Checked<Materials> table = read_table(base::YamlFile(kBuiltInMaterials, "the built-in materials"));
-    if (!table) throw std::logic_error(base::render(table.error(), "pinjaw was built with them"));
-    return *table;
+  static const Materials table = [] {
+    base::Checked<Materials> read = read_table(base::YamlFile(kBuiltInMaterials, "the built-in materials"));
+    if (!read) throw std::logic_error(base::render(read.error(), "pinjaw was built with them"));
+    return *read;
   }();
-  return kTable;
+  return table;
 }
 
 }  // namespace pinjaw::config

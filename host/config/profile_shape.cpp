@@ -116,8 +116,8 @@ double swept_area_mm2(const Arc& arc) {
 /// Angle under which the point sees the directed curve.
 double seen_rad(const Vector2d& p_mm, const model::ProfileEdge& edge) {
   const auto* arc = std::get_if<Arc>(&edge.curve);
-  constexpr double kPiece_rad = std::numbers::pi / 180;  // chosen: chords within 4e-5 of the radius
-  const int pieces = arc == nullptr ? 1 : static_cast<int>(std::ceil(arc->sweep_rad / kPiece_rad));
+  constexpr double kPieceRad = std::numbers::pi / 180;  // chosen: chords within 4e-5 of the radius
+  const int pieces = arc == nullptr ? 1 : static_cast<int>(std::ceil(arc->sweep_rad / kPieceRad));
   double angle_rad = 0;
   Vector2d from = first_point(edge.curve) - p_mm;
   for (int i = 1; i <= pieces; ++i) {
