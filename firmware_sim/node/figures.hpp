@@ -10,18 +10,18 @@ namespace pinjaw::node {
 
 /// Figures of the pneumatics that differ from the plant's own; nothing: as the plant has them.
 struct PlantFigures {
-  std::optional<double> supply_bar;        ///< gauge
-  std::optional<double> supply_droop_bar;  ///< while a neighbour moves
-  std::optional<double> moving_mass_kg;
-  std::optional<double> dead_volume_cm3;  ///< of each chamber, hose included
-  std::optional<double> spring_n;         ///< keeper
-  std::optional<double> coulomb_friction_n;
-  std::optional<double> breakaway_friction_n;
-  std::optional<double> contact_n_mm;
-  std::optional<double> close_conductance_dm3_s_bar;
-  std::optional<double> leak_dm3_s_bar;
-  std::optional<double> pressure_noise_mbar;
-  std::optional<double> pressure_offset_mbar;
+  std::optional<double> supply_bar{};        ///< gauge
+  std::optional<double> supply_droop_bar{};  ///< while a neighbour moves
+  std::optional<double> moving_mass_kg{};
+  std::optional<double> dead_volume_cm3{};  ///< of each chamber, hose included
+  std::optional<double> spring_n{};         ///< keeper
+  std::optional<double> coulomb_friction_n{};
+  std::optional<double> breakaway_friction_n{};
+  std::optional<double> contact_n_mm{};
+  std::optional<double> close_conductance_dm3_s_bar{};
+  std::optional<double> leak_dm3_s_bar{};
+  std::optional<double> pressure_noise_mbar{};
+  std::optional<double> pressure_offset_mbar{};
 };
 
 /// What a controller's file and kit say of it, as plain values.
@@ -33,7 +33,7 @@ struct Figures {
   double force_uncertainty_n = 12;  ///< of force inferred from pressure
   double separation_min_mm = 0;
   double separation_max_mm = 60;
-  PlantFigures plant;
+  PlantFigures plant{};
 };
 
 /// Integers for the firmware.

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "firmware_sim/world/world.hpp"
+#include "protocol/bus/sim_bus.hpp"
+#include "tests/firmware_sim/support/scripted_host.hpp"
+
+namespace pinjaw::test {
+
+/// How one station of a test cell grips the test part.
+struct TestGrip {
+  int node = 1;
+  bool passive = false;
+  double separation_mm = 30;
+  double needed_n = 40;
+  double limit_n = 140;
+};
+
+/// A passive station 3 and two grippers 1 and 2, all of them peers of each other.
+std::vector<TestGrip> arm_pedestal_pallet();
+
+/// Thrown out of a script when its host has been killed.
+struct HostKilled {};
+
+/// Stations, bus, world and a scripted host in virtual time.
+class TestCell {
+ public:
+  explicit TestCell(std::vector<TestGrip> grips, std::uint64_t seed = 1);
+
+  /// One millisecond of everything.
+  void advance();
+  void run_ms(int duration_ms);
+  /// Whether `condition` came true within `at_most_ms`.
+  bool run_until(const std::function<bool()>& condition, int at_most_ms);
+  /// From now_ms() == `at_ms` on the host says nothing and scripts end with HostKilled.
+  void kill_host_at(int at_ms) { kill_at_ms_ = at_ms; }
+
+  /// Boots, transfers and commits every layout; false where one is refused.
+  bool commission();
+  std::optional<wire::TransferStatus> send_layout(const TestGrip& grip);
+  /// The answer, or a default with Busy where none came.
+  wire::Acknowledge command(int node, const wire::Command& command);
+  bool arm(int node);
+  bool wait_for(int node, wire::State state, int at_most_ms);
+
+  /// The part onto the passive station `on`, whose custody begins by CLOSE_LIGHT and SQUEEZE as an operator
+  /// loads.
+  bool load(int on);
+  /// OFFER, ACCEPT, SQUEEZE, and waits until the nodes have done the rest.
+  bool hand_over(int giver, int receiver);
+  bool squeeze(int node);
+
+  bench::Reply ask(const bench::Request& request) { return world_->handle(request); }
+  [[nodiscard]] bench::Truth truth() const { return world_->truth(); }
+  [[nodiscard]] const bench::NodeTruth& truth_of(int node);
+  [[nodiscard]] wire::State state_of(int node) const;
+  [[nodiscard]] int now_ms() const { return now_ms_; }
+  world::World& world() { return *world_; }
+  ScriptedHost& host() { return *host_; }
+  bus::SimBus& bus() { return bus_; }
+  /// What crossed the bus, what happened in the world.
+  [[nodiscard]] const std::string& frame_log() const { return frame_log_; }
+  [[nodiscard]] const std::string& event_log() const { return event_log_; }
+
+  [[nodiscard]] wire::Layout layout_of(const TestGrip& grip) const;
+
+ private:
+  bus::SimBus bus_;
+  std::vector<TestGrip> grips_;
+  std::vector<std::unique_ptr<bus::Bus>> ends_;
+  std::unique_ptr<bus::Bus> host_end_;
+  std::unique_ptr<world::World> world_;
+  std::unique_ptr<ScriptedHost> host_;
+  bench::Truth last_truth_;
+  std::optional<int> kill_at_ms_;
+  int now_ms_ = 0;
+  std::string frame_log_;
+  std::string event_log_;
+};
+
+}  // namespace pinjaw::test
