@@ -6,11 +6,12 @@
 
 /// The controller's firmware: a pure function of its state and inputs, stepped every millisecond.
 ///
-/// It holds no clock, no heap and no hardware: whoever steps it reads sensors and frames before, and carries out
-/// valves, frames and non-volatile writes after. The state is a plain value; a copy is a snapshot.
+/// It holds no clock, no heap and no hardware: whoever steps it reads sensors and frames before, and carries
+/// out valves, frames and non-volatile writes after. The state is a plain value; a copy is a snapshot.
 ///
 ///     State state = power_on(config, image_from_memory);
-///     each ms: Outputs outputs = step(state, {.elapsed_ms = 1, .received = frames, .sensors = ..., .nvm = ...});
+///     each ms: Outputs outputs = step(state, {.elapsed_ms = 1, .received = frames, .sensors = ..., .nvm =
+///     ...});
 namespace pinjaw::core {
 
 /// State after a reset; the valves stay de-energised until the first steps have looked at sensors and record.

@@ -54,6 +54,10 @@ class Faults {
     active_ &= ~bit;
     to_report_ |= bit;
   }
+  void clear_all() {
+    to_report_ |= active_;
+    active_ = 0;
+  }
   /// Reports something that happened and is over.
   void note(wire::FaultCode code) { to_report_ |= bit_of(code); }
   void report_all_again() { to_report_ |= active_; }

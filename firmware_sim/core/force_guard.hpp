@@ -5,8 +5,8 @@
 #include "firmware_sim/core/config.hpp"
 #include "firmware_sim/core/io.hpp"
 
-/// The last gate before the valves that can raise force. It knows no states and no commands: only the limit, sensor
-/// B, and what the rest of the core wants (reliability figures, sections 2.1 and 3).
+/// The last gate before the valves that can raise force. It knows no states and no commands: only the limit,
+/// sensor B, and what the rest of the core wants (reliability figures, sections 2.1 and 3).
 namespace pinjaw::core {
 
 struct ForceGuard {
@@ -15,9 +15,9 @@ struct ForceGuard {
   bool cut = false;            ///< the supply is cut
 };
 
-/// `wanted` as far as the limit allows: the set point is clamped so that F_set + u <= `limit_dn`, and with F_high
-/// over the limit for 3 ms the supply is cut and the chamber shut in, until F_high is under it again for 20 ms.
-/// Letting air out is never in its way.
+/// `wanted` as far as the limit allows: the set point is clamped so that F_set + u <= `limit_dn`, and with
+/// F_high over the limit for 3 ms the supply is cut and the chamber shut in, until F_high is under it again
+/// for 20 ms. Letting air out is never in its way.
 Valves guarded(const Config& config, std::int32_t limit_dn, const Sensors& sensors, std::uint32_t elapsed_ms,
                const Valves& wanted, ForceGuard& guard);
 

@@ -17,14 +17,14 @@ HostLink::Host& HostLink::slot_for(std::uint16_t epoch) {
 void HostLink::hear(const wire::Received<wire::HostHeartbeat>& heartbeat, std::uint8_t node) {
   Host& host = slot_for(heartbeat.message.epoch);
   host.heard.start(wire::kHostFresh_ms);
-  if (host.reception.accept(heartbeat.label.counter, wire::kHostFresh_ms)) {
-    host.permit = heartbeat.message.permits(node);
-  }
+  if (host.counter.accept(heartbeat.label.counter) != wire::CounterVerdict::Qualified) return;
+  host.permit = heartbeat.message.permits(node);
+  host.followed.start(wire::kHostFresh_ms);
 }
 
 void HostLink::advance(std::uint16_t elapsed_ms) {
   for (Host& host : hosts_) {
-    host.reception.advance(elapsed_ms);
+    host.followed.advance(elapsed_ms);
     host.heard.advance(elapsed_ms);
     if (!host.heard.running()) host = Host{};
   }

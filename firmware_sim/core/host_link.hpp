@@ -9,8 +9,8 @@
 
 namespace pinjaw::core {
 
-/// What a controller knows of hosts. Two are followed at a time, so that a second one is noticed without making the
-/// first seem lost. Never heard is the same as lost.
+/// What a controller knows of hosts. Two are followed at a time, so that a second one is noticed without
+/// making the first seem lost. Never heard is the same as lost.
 class HostLink {
  public:
   /// Takes in a heartbeat whose checksum is right.
@@ -20,7 +20,7 @@ class HostLink {
   void advance(std::uint16_t elapsed_ms);
 
   /// The host that is followed has been heard, in order, within 200 ms.
-  [[nodiscard]] bool alive() const { return hosts_[0].reception.fresh(); }
+  [[nodiscard]] bool alive() const { return hosts_[0].followed.running(); }
   /// It lets this node move.
   [[nodiscard]] bool permits() const { return alive() && hosts_[0].permit; }
   /// Its epoch; meaningful while alive().
@@ -32,8 +32,10 @@ class HostLink {
   struct Host {
     std::uint16_t epoch = 0;
     bool permit = false;
-    wire::Reception reception;  ///< qualified and fresh
-    wire::Countdown heard;      ///< merely heard
+    wire::CounterCheck counter;
+    wire::Countdown
+        followed;           ///< since the last usable heartbeat: a repeated one must not make the host lost
+    wire::Countdown heard;  ///< since any heartbeat of this epoch
   };
   Host& slot_for(std::uint16_t epoch);
 

@@ -16,21 +16,21 @@ struct Sensors {
   std::array<std::int32_t, 2> open_mbar{};
   std::int32_t supply_mbar = 0;
   std::int32_t separation_10um = 0;
-  std::uint8_t seats = 0;      ///< a bit for each seat switch that is pressed
-  bool local_enable = false;   ///< the operator's key or button at the station
+  std::uint8_t seats = 0;     ///< a bit for each seat switch that is pressed
+  bool local_enable = false;  ///< the operator's key or button at the station
 };
 
-/// Main spool: Hold is where its spring puts it without current. There the close chamber is shut in by the check
-/// valve and nothing opens.
+/// Main spool: Hold is where its spring puts it without current. There the close chamber is shut in by the
+/// check valve and nothing opens.
 enum class Spool : std::uint8_t { Hold, Close, Open };
 
 /// The output image; a default one is the de-energised state.
 struct Valves {
   Spool spool = Spool::Hold;
   std::int32_t close_set_mbar = 0;  ///< the close regulator's set point
-  bool relax = false;               ///< lifts the check valve: the close chamber may blow back to the regulator
-  bool pre_vent = false;            ///< vents the open chamber past the meter-out
-  bool supply_cut = false;          ///< the cut-off before the regulator
+  bool relax = false;       ///< lifts the check valve: the close chamber may blow back to the regulator
+  bool pre_vent = false;    ///< vents the open chamber past the meter-out
+  bool supply_cut = false;  ///< the cut-off before the regulator
   friend bool operator==(const Valves&, const Valves&) = default;
 };
 
@@ -56,8 +56,8 @@ struct NvmRecord {
   std::uint16_t permit_dn = 0;       ///< F_permit when it was taken
   std::uint16_t session_block = 0;   ///< sessions up to here have been given out
   std::uint16_t boot_count = 0;
-  std::uint16_t seen_givers = 0;                  ///< bit n: a token of node n was accepted before
-  std::array<std::uint16_t, 16> last_token{};     ///< the last one of each giver (R8)
+  std::uint16_t seen_givers = 0;               ///< bit n: a token of node n was accepted before
+  std::array<std::uint16_t, 16> last_token{};  ///< the last one of each giver (R8)
   friend bool operator==(const NvmRecord&, const NvmRecord&) = default;
 };
 

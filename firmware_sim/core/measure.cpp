@@ -5,10 +5,11 @@
 namespace pinjaw::core {
 namespace {
 
-constexpr std::int32_t kFilter_ms = 8;          // chosen: 5 mbar of noise become 0.03 N; lag far under a ramp's 150 ms
-constexpr std::int32_t kStill_10um = 3;         // chosen: over the sensor's step, under 0.1 mm
-constexpr std::uint16_t kTrouble_ms = 3;        // I5
-constexpr std::uint16_t kSupplyLow_ms = 50;     // chosen: a droop of a neighbour's move is not a loss
+constexpr std::int32_t kFilter_ms =
+    8;  // chosen: 5 mbar of noise become 0.03 N; lag far under a ramp's 150 ms
+constexpr std::int32_t kStill_10um = 3;      // chosen: over the sensor's step, under 0.1 mm
+constexpr std::uint16_t kTrouble_ms = 3;     // I5
+constexpr std::uint16_t kSupplyLow_ms = 50;  // chosen: a droop of a neighbour's move is not a loss
 constexpr std::int32_t kPressureLeast_mbar = -700;
 constexpr std::int32_t kPressureMost_mbar = 9900;  // the sensors' full scale is 10 bar
 constexpr std::int32_t kOverTravel_10um = 200;
@@ -25,8 +26,8 @@ std::uint16_t counted(std::uint16_t ms, bool going_on, std::uint32_t elapsed_ms)
 
 SensorTrouble trouble_of(const Config& config, const Sensors& sensors) {
   if (config.passive) return SensorTrouble::None;
-  for (const std::int32_t reading_mbar : {sensors.close_mbar[0], sensors.close_mbar[1], sensors.open_mbar[0],
-                                          sensors.open_mbar[1]}) {
+  for (const std::int32_t reading_mbar :
+       {sensors.close_mbar[0], sensors.close_mbar[1], sensors.open_mbar[0], sensors.open_mbar[1]}) {
     if (reading_mbar < kPressureLeast_mbar || reading_mbar > kPressureMost_mbar) {
       return SensorTrouble::PressureRange;
     }

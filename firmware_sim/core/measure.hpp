@@ -26,21 +26,22 @@ struct Measurement {
   std::int32_t open_ubar = 0;                ///< filtered mean of both
   Squeeze squeeze;
   std::int32_t separation_10um = 0;
-  std::int32_t still_at_10um = 0;     ///< where the jaws were when `still_ms` began
-  std::uint16_t still_ms = 0;         ///< how long they have not moved
-  std::uint16_t troubled_ms = 0;      ///< how long something has been wrong with the sensors
+  std::int32_t still_at_10um = 0;  ///< where the jaws were when `still_ms` began
+  std::uint16_t still_ms = 0;      ///< how long they have not moved
+  std::uint16_t troubled_ms = 0;   ///< how long something has been wrong with the sensors
   SensorTrouble suspected = SensorTrouble::None;
   SensorTrouble trouble = SensorTrouble::None;  ///< `suspected`, after 3 ms (I5)
   std::uint16_t supply_low_ms = 0;
   bool supply_low = false;
-  bool seated = false;                ///< every seat switch of a passive station is on
-  bool seats_clear = false;           ///< every one is off
+  bool seated = false;       ///< every seat switch of a passive station is on
+  bool seats_clear = false;  ///< every one is off
   bool local_enable = false;
   std::int32_t supply_mbar = 0;
 };
 
 /// Takes in one step's readings.
-void observe(const Config& config, const Sensors& sensors, std::uint32_t elapsed_ms, Measurement& measurement);
+void observe(const Config& config, const Sensors& sensors, std::uint32_t elapsed_ms,
+             Measurement& measurement);
 
 /// Squeeze that `close_mbar` would make with `open_mbar` behind it.
 std::int32_t squeeze_dn(const Config& config, std::int32_t close_ubar, std::int32_t open_ubar);

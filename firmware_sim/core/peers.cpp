@@ -19,18 +19,23 @@ const Peer* Peers::find(std::uint8_t node) const {
   return nullptr;
 }
 
-Peer* Peers::find(std::uint8_t node) { return const_cast<Peer*>(std::as_const(*this).find(node)); }
+Peer* Peers::find(std::uint8_t node) {
+  return const_cast<Peer*>(std::as_const(*this).find(node));
+}
 
 void Peers::hear(const wire::Received<wire::Custody>& custody) {
   Peer* peer = find(custody.label.node);
   if (peer == nullptr) return;
-  if (peer->custody_reception.accept(custody.label.counter, wire::kPeerFresh_ms)) peer->custody = custody.message;
+  if (peer->custody_reception.accept(custody.label.counter, wire::kPeerFresh_ms))
+    peer->custody = custody.message;
 }
 
 void Peers::hear(const wire::Received<wire::NodeState>& state) {
   Peer* peer = find(state.label.node);
   if (peer == nullptr) return;
-  if (peer->state_reception.accept(state.label.counter, wire::kPeerFresh_ms)) peer->state = state.message;
+  if (peer->state_counter.accept(state.label.counter) != wire::CounterVerdict::Qualified) return;
+  peer->state = state.message;
+  peer->state_fresh.start(wire::kPeerFresh_ms);
 }
 
 void Peers::hear(const wire::Received<wire::FaultReport>& fault) {
@@ -45,8 +50,8 @@ void Peers::hear(const wire::Received<wire::FaultReport>& fault) {
 
 void Peers::advance(std::uint16_t elapsed_ms) {
   for (Peer& peer : peers_) {
-    peer.custody_reception.advance(elapsed_ms);
-    peer.state_reception.advance(elapsed_ms);
+    peer.custody_fresh.advance(elapsed_ms);
+    peer.state_fresh.advance(elapsed_ms);
     peer.faulty.advance(elapsed_ms);
   }
 }

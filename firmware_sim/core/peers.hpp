@@ -10,16 +10,18 @@
 
 namespace pinjaw::core {
 
-/// What a controller knows of one other node that its layout names. Messages are kept only from qualified frames
-/// (three in a row, at most two lost); whoever uses them asks for their freshness.
+/// What a controller knows of one other node that its layout names. Messages are kept only from qualified
+/// frames (three in a row, at most two lost); whoever uses them asks for their freshness.
 struct Peer {
-  wire::Reception custody_reception;
-  wire::Reception state_reception;
+  wire::CounterCheck custody_counter;
+  wire::CounterCheck state_counter;
+  wire::Countdown custody_fresh;  ///< since the last usable frame: a repeated one must not make the peer lost
+  wire::Countdown state_fresh;
   wire::Custody custody;
   wire::NodeState state;
   wire::Countdown faulty;  ///< runs while it reports a fault for which it must hold
 
-  [[nodiscard]] bool fresh() const { return custody_reception.fresh() && state_reception.fresh(); }
+  [[nodiscard]] bool fresh() const { return custody_fresh.running() && state_fresh.running(); }
 };
 
 /// The nodes that the committed layout names, in its order. Frames of others mean nothing here.

@@ -36,6 +36,7 @@ struct Store {
   bool record_waits = false;
   bool layout_waits = false;
   bool failed = false;
+  bool readable = true;  ///< memory could be read when power came
 
   /// What was asked for last is safe. Nobody is told a fact before.
   [[nodiscard]] bool durable() const {
@@ -63,8 +64,8 @@ enum class Flow : std::uint8_t { Shut, Filling, Relieving };
 
 struct ForceControl {
   Flow flow = Flow::Shut;
-  std::int32_t reference_dn = 0;    ///< runs after the set point at the ramp's rate
-  std::int32_t integral_ubar = 0;   ///< what the regulator needs beyond its set point
+  std::int32_t reference_dn = 0;   ///< runs after the set point at the ramp's rate
+  std::int32_t integral_ubar = 0;  ///< what the regulator needs beyond its set point
 };
 
 /// Times that remain.
@@ -130,21 +131,19 @@ struct State {
   LayoutService service;
   Counters counters;
 
-  std::uint16_t session_epoch = 0;     ///< of the host that opened the session
-  std::uint16_t next_session = 0;      ///< sessions given out so far
-  std::uint16_t permit_dn = 0;         ///< F_permit of the squeeze; 0: light only
-  std::uint16_t force_set_dn = 0;      ///< F_set of the squeeze
-  std::int32_t reference_10um = 0;     ///< separation from which slip counts
+  std::uint16_t session_epoch = 0;  ///< of the host that opened the session
+  std::uint16_t next_session = 0;   ///< sessions given out so far
+  std::uint16_t permit_dn = 0;      ///< F_permit of the squeeze; 0: light only
+  std::uint16_t force_set_dn = 0;   ///< F_set of the squeeze
+  std::int32_t reference_10um = 0;  ///< separation from which slip counts
   std::uint16_t challenge = 0;
-  std::uint8_t bad_hold_ms = 0;        ///< how long F_low has been under F_req
+  std::uint8_t bad_hold_ms = 0;  ///< how long F_low has been under F_req
   std::uint8_t identity_page = 0;
-  bool identity_burst = true;          ///< pages follow each other at once
-  bool host_was_alive = false;
-  bool frozen = false;           ///< HOLD stopped the jaws; the next ARM lets them go on
-  bool opening_wanted = false;   ///< READY: the jaws are on their way to fully open
-  bool hold_proven = false;      ///< the hold was stable at least once since power came
-  bool store_failure_seen = false;
-  bool answer_seen = false;      ///< OFFERED: a TAKE for this token was heard
+  bool identity_burst = true;   ///< pages follow each other at once
+  bool frozen = false;          ///< HOLD stopped the jaws; the next ARM lets them go on
+  bool opening_wanted = false;  ///< READY: the jaws are on their way to fully open
+  bool hold_proven = false;     ///< the hold was stable at least once since power came
+  bool answer_seen = false;     ///< OFFERED: a TAKE for this token was heard
 };
 
 }  // namespace pinjaw::core

@@ -105,13 +105,13 @@ static_assert(everywhere([](StateId state, Event event, Reaction r) {
               }),
               "jaws open only after a decision, stored before or taken now, or by the operator's hand");
 
-static_assert(everywhere([](StateId state, Event event, Reaction r) {
-                if (r.kind != ReactionKind::Go || !holds(state) || grips(r.next)) return true;
-                return (r.next == StateId::Opening) ||
-                       (state == StateId::Taken && event == Event::PeerRetained) ||
-                       (state == StateId::FaultHold && event == Event::CmdClearEmpty);
-              }),
-              "who answers for a part lets go only by decision, by its giver's RETAIN, or with no part there");
+static_assert(
+    everywhere([](StateId state, Event event, Reaction r) {
+      if (r.kind != ReactionKind::Go || !holds(state) || grips(r.next)) return true;
+      return (r.next == StateId::Opening) || (state == StateId::Taken && event == Event::PeerRetained) ||
+             (state == StateId::FaultHold && event == Event::CmdClearEmpty);
+    }),
+    "who answers for a part lets go only by decision, by its giver's RETAIN, or with no part there");
 
 static_assert(everywhere([](StateId, Event event, Reaction r) {
                 return !is_silence(event) || r.kind != ReactionKind::Go ||
@@ -151,6 +151,8 @@ static_assert(everywhere([](StateId state, Event, Reaction r) {
 
 }  // namespace
 
-Reaction reaction(StateId state, Event event) { return look_up(state, event); }
+Reaction reaction(StateId state, Event event) {
+  return look_up(state, event);
+}
 
 }  // namespace pinjaw::core

@@ -8,9 +8,9 @@
 
 /// The controller's state machine as data: every state by every event, nothing left to a default.
 ///
-/// Source: the reliability figures, section 2.6. An event's name contains its guard: `PeerHolds` is raised only while
-/// G_peer holds, so the table needs no conditions, and a rule such as 'opens only after a decision' is a property
-/// of the table that the compiler checks.
+/// Source: the reliability figures, section 2.6. An event's name contains its guard: `PeerHolds` is raised
+/// only while G_peer holds, so the table needs no conditions, and a rule such as 'opens only after a
+/// decision' is a property of the table that the compiler checks.
 namespace pinjaw::core {
 
 using StateId = wire::State;
@@ -21,8 +21,8 @@ enum class Event : std::uint8_t {
   CmdHold,
   CmdWrite,
   CmdCommit,
-  CmdArm,           ///< a new session only
-  CmdArmReady,      ///< a new session, permit on and no fault
+  CmdArm,       ///< a new session only
+  CmdArmReady,  ///< a new session, permit on and no fault
   CmdDisarm,
   CmdCloseLight,
   CmdAccept,
@@ -98,11 +98,14 @@ constexpr bool holds(StateId state) {
   }
 }
 
-/// States that may have a part of their own between the jaws: H, and those that grip without answering for it.
+/// States that may have a part of their own between the jaws: H, and those that grip without answering for
+/// it.
 constexpr bool grips(StateId state) {
   return holds(state) || state == StateId::Relax || state == StateId::Resqueeze;
 }
 
-constexpr bool is_command(Event event) { return event <= Event::CmdManualRelease; }
+constexpr bool is_command(Event event) {
+  return event <= Event::CmdManualRelease;
+}
 
 }  // namespace pinjaw::core

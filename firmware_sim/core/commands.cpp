@@ -1,0 +1,127 @@
+#include "firmware_sim/core/commands.hpp"
+
+#include <optional>
+
+#include "firmware_sim/core/custody.hpp"
+#include "firmware_sim/core/transitions.hpp"
+#include "protocol/wire/commands.hpp"
+
+namespace pinjaw::core {
+namespace {
+
+using wire::Admission;
+using wire::CommandResult;
+using wire::Reason;
+
+constexpr std::uint16_t kChallenge_ms = 3000;  // section 2.6
+constexpr std::uint16_t kSessionBlock = 16;    // chosen: one store for so many sessions
+
+/// Answers to commands that are not looked at further; nothing for one that is.
+std::optional<Answer> turned_away(Admission admission) {
+  switch (admission) {
+    case Admission::NotArmed:
+      return Answer{CommandResult::BadSession, Reason::NotArmed};
+    case Admission::WrongSession:
+      return Answer{CommandResult::BadSession, Reason::WrongSession};
+    case Admission::OldSequence:
+      return Answer{CommandResult::BadSequence, Reason::SequenceOld};
+    case Admission::UsedUp:
+      return Answer{CommandResult::BadSequence, Reason::SequenceUsedUp};
+    default:
+      return std::nullopt;
+  }
+}
+
+/// Sessions are handed out from blocks that were stored before, so that none comes twice after a power cut.
+void open_session(State& state) {
+  ++state.next_session;
+  if (state.next_session == 0) ++state.next_session;
+  const auto left = static_cast<std::uint16_t>(state.store.record.session_block - state.next_session);
+  if (left == 0 || left > kSessionBlock) {
+    NvmRecord record = state.store.record;
+    record.session_block = static_cast<std::uint16_t>(state.next_session + kSessionBlock);
+    save(state.store, record);
+  }
+  state.gate.open(state.next_session);
+  state.session_epoch = state.host.epoch();
+  state.frozen = false;
+}
+
+/// A number that nobody knows before it is said; 1..4095.
+std::uint16_t new_challenge(const State& state) {
+  const std::uint32_t mixed = (state.counters.steps ^ (std::uint32_t{state.next_session} << 7)) * 2654435761U;
+  return static_cast<std::uint16_t>(1U + (mixed >> 16) % 4095U);
+}
+
+/// What a command brings with it, taken up before its event.
+void take_up(State& state, const wire::Command& command) {
+  switch (command.op) {
+    case wire::Op::Arm:
+      return open_session(state);
+    case wire::Op::CloseLight:
+      state.receiving = {.giver = wire::kOperatorPeer};
+      return;
+    case wire::Op::Accept: {
+      const wire::Custody& offer = state.peers.find(command.argument)->custody;
+      state.receiving = {.giver = command.argument, .token = offer.token, .pair = offer.pair};
+      return;
+    }
+    case wire::Op::Squeeze:
+      state.force_set_dn = wire::squeeze_forces(command).set_dn;
+      state.permit_dn = wire::squeeze_forces(command).permit_dn;
+      return;
+    case wire::Op::Offer:
+      state.store.record.peer = command.argument;
+      return;
+    case wire::Op::ManualRelease:
+      if (command.argument != 1) return state.timers.challenge.stop();
+      state.challenge = new_challenge(state);
+      state.timers.challenge.start(kChallenge_ms);
+      state.faults.note(wire::FaultCode::ManualRelease);
+      return;
+    case wire::Op::ClearFault:
+      // A part without a record is the node's own from now on: it can then be offered, or released by hand.
+      if (state.id == StateId::FaultHold && !has_custody(state.store.record.custody)) {
+        NvmRecord record = state.store.record;
+        record.custody = Custody::Sole;
+        save(state.store, record);
+      }
+      return;
+    default:
+      return;
+  }
+}
+
+}  // namespace
+
+wire::Acknowledge obey(State& state, const wire::Command& command) {
+  const Admission admission = state.gate.admit(command);
+  if (admission == Admission::Repeated) return state.gate.last_answer();
+  Answer answer;
+  if (const std::optional<Answer> away = turned_away(admission)) {
+    answer = *away;
+  } else {
+    const Decision decision = decide(state, command);
+    answer = decision.answer;
+    if (answer.result == CommandResult::Ok) {
+      if (decision.event != Event::CmdClearEmpty) take_up(state, command);
+      apply(state, decision.event);
+    }
+  }
+  wire::Acknowledge acknowledge{.sequence = command.sequence,
+                                .op = command.op,
+                                .result = answer.result,
+                                .session = state.gate.session(),
+                                .reason = answer.reason,
+                                .state = state.id,
+                                .next_sequence = state.gate.next_sequence()};
+  const bool opens = command.op == wire::Op::Arm && answer.result == CommandResult::Ok;
+  if (admission != Admission::New || command.op == wire::Op::Hold) return acknowledge;
+  if (command.op == wire::Op::Arm && !opens) return acknowledge;
+  acknowledge.next_sequence =
+      command.sequence == 255 ? command.sequence : static_cast<std::uint8_t>(command.sequence + 1);
+  state.gate.remember(command, acknowledge);
+  return acknowledge;
+}
+
+}  // namespace pinjaw::core

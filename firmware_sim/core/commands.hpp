@@ -1,0 +1,27 @@
+#pragma once
+
+#include "firmware_sim/core/state.hpp"
+
+/// What hosts ask for. Every command is answered; one that is refused changes no output and says why.
+namespace pinjaw::core {
+
+struct Answer {
+  wire::CommandResult result = wire::CommandResult::Ok;
+  wire::Reason reason = wire::Reason::None;
+  friend bool operator==(const Answer&, const Answer&) = default;
+};
+
+/// What a command would do: the event it raises, unless its answer is other than Ok.
+struct Decision {
+  Answer answer;
+  Event event = Event::CmdHold;
+};
+
+/// Judges a command whose session and sequence are right. Changes nothing.
+Decision decide(const State& state, const wire::Command& command);
+
+/// Judges and carries out a command, and gives its acknowledgement; a repeat of the last command gets the
+/// same one and does nothing.
+wire::Acknowledge obey(State& state, const wire::Command& command);
+
+}  // namespace pinjaw::core

@@ -1,0 +1,69 @@
+#include "firmware_sim/core/custody.hpp"
+
+#include "firmware_sim/core/guards.hpp"
+
+namespace pinjaw::core {
+
+void save(Store& store, const NvmRecord& record) {
+  store.record = record;
+  store.record_waits = true;
+}
+
+void acknowledge(Store& store, const NvmStatus& status) {
+  store.done = status.done;
+  store.failed = status.failed && status.done != store.requested;
+}
+
+std::optional<NvmWrite> flush(Store& store, const LayoutBlob& committed) {
+  if (!store.record_waits && !store.layout_waits) return std::nullopt;
+  NvmWrite write;
+  write.sequence = ++store.requested;
+  if (store.record_waits) write.record = store.record;
+  if (store.layout_waits) write.layout = committed;
+  store.record_waits = false;
+  store.layout_waits = false;
+  return write;
+}
+
+void announce(State& state) {
+  if (!state.store.durable()) return;
+  const NvmRecord& record = state.store.record;
+  const auto say = [&](wire::Fact fact) {
+    state.announced = {.fact = fact, .peer = record.peer, .token = record.token, .pair = record.pair};
+  };
+  switch (record.custody) {
+    case Custody::Empty:
+      state.announced = {.fact = wire::Fact::Empty};
+      return;
+    case Custody::Sole:
+      return say(wire::Fact::Sole);
+    case Custody::Offered:
+      if (state.id == StateId::Offered || state.id == StateId::Relax) say(wire::Fact::Offer);
+      return;
+    case Custody::Latched:
+      if (state.hold_proven) say(wire::Fact::Take);
+      return;
+    case Custody::Decided:
+      return;
+    case Custody::Released:
+      return say(wire::Fact::Released);
+    case Custody::Retained:
+      if (state.announced.fact != wire::Fact::Retain && !holds_enough(state)) return;
+      return say(wire::Fact::Retain);
+  }
+}
+
+bool token_is_new(const NvmRecord& record, std::uint8_t giver, std::uint16_t token) {
+  if (giver >= record.last_token.size()) return false;
+  if (((record.seen_givers >> giver) & 1U) == 0) return true;
+  const auto ahead = static_cast<std::uint16_t>(token - record.last_token[giver]);
+  return ahead != 0 && ahead < 0x8000;
+}
+
+void remember_token(NvmRecord& record, std::uint8_t giver, std::uint16_t token) {
+  if (giver >= record.last_token.size()) return;
+  record.last_token[giver] = token;
+  record.seen_givers = static_cast<std::uint16_t>(record.seen_givers | (1U << giver));
+}
+
+}  // namespace pinjaw::core

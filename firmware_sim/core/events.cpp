@@ -1,0 +1,225 @@
+#include "firmware_sim/core/events.hpp"
+
+#include <algorithm>
+
+#include "firmware_sim/core/custody.hpp"
+#include "firmware_sim/core/guards.hpp"
+#include "firmware_sim/core/transitions.hpp"
+
+namespace pinjaw::core {
+namespace {
+
+using Occurrence = std::optional<Event>;
+
+constexpr std::uint16_t kContact_ms = 80;   // section 3: seat dwell
+constexpr std::uint16_t kBlocked_ms = 400;  // chosen: time for the push that breaks loose a jaw that sticks
+constexpr std::uint8_t kBadHold_ms = 3;     // I5
+constexpr std::uint16_t kPeerGood_ms = 60;  // three cycles of 20 ms
+
+/// Three quarters of F_light press: what stands still now is stopped by something.
+bool presses(const State& state) {
+  return 4 * state.measurement.squeeze.measured_dn >= 3 * state.layouts.layout.f_light_dn;
+}
+
+/// A fault that is a condition: set and cleared as it comes and goes.
+void follow(State& state, wire::FaultCode code, bool there) {
+  if (there && !state.faults.active(code)) raise(state, code);
+  if (!there) state.faults.clear(code);
+}
+
+/// An event that only sets a fault is raised once.
+bool is_news(const State& state, wire::FaultCode code) {
+  return !state.faults.active(code);
+}
+
+Occurrence in_boot(const State& state) {
+  const Custody custody = state.store.record.custody;
+  if (state.store.failed || !state.store.readable) return Event::BootBad;
+  if (has_custody(custody) || !no_part_proven(state)) return Event::BootHeld;
+  return state.layouts.committed ? Event::BootLoaded : Event::BootBare;
+}
+
+Occurrence in_recover(const State& state) {
+  if (!state.layouts.committed) return Event::RecordNone;
+  switch (state.store.record.custody) {
+    case Custody::Offered:
+      return Event::RecordOffered;
+    case Custody::Latched:
+      return Event::RecordLatched;
+    case Custody::Decided:
+      return Event::RecordDecided;
+    case Custody::Sole:
+    case Custody::Retained:
+      return Event::RecordSole;
+    default:
+      return Event::RecordNone;
+  }
+}
+
+Occurrence in_seating(const State& state) {
+  if (state.frozen) return std::nullopt;
+  const Measurement& m = state.measurement;
+  if (state.config.passive) return m.seated ? Occurrence(Event::Contact) : std::nullopt;
+  const wire::Layout& layout = state.layouts.layout;
+  if (m.separation_10um < layout.separation_contact_10um - layout.separation_tolerance_10um)
+    return Event::NoPart;
+  if (separation_in_window(state)) {
+    if (m.still_ms >= kContact_ms && presses(state)) return Event::Contact;
+  } else if (m.still_ms >= kBlocked_ms && presses(state)) {
+    return Event::Misseated;
+  }
+  return state.timers.state.running() ? std::nullopt : Occurrence(Event::Misseated);
+}
+
+Occurrence in_squeezing(const State& state) {
+  if (!state.config.passive && state.measurement.squeeze.high_dn > force_limit_dn(state))
+    return Event::OverForce;
+  if (slipped(state)) return Event::Slip;
+  if (hold_is_stable(state)) {
+    return state.receiving.giver == wire::kOperatorPeer ? Event::HoldStableForOperator
+                                                        : Event::HoldStableForPeer;
+  }
+  return state.timers.state.running() ? std::nullopt : Occurrence(Event::SqueezeTimeout);
+}
+
+/// Events of a held part that only set a fault.
+Occurrence while_held(const State& state) {
+  if (state.bad_hold_ms >= kBadHold_ms && is_news(state, wire::FaultCode::HoldLost)) return Event::HoldLost;
+  if (slipped(state) && is_news(state, wire::FaultCode::Slip)) return Event::Slip;
+  const bool over = !state.config.passive && state.measurement.squeeze.high_dn > force_limit_dn(state);
+  if (over && is_news(state, wire::FaultCode::OverForce)) return Event::OverForce;
+  return std::nullopt;
+}
+
+Occurrence in_taken(const State& state) {
+  if (peer_says(state, wire::Fact::Released)) return Event::PeerReleased;
+  if (peer_says(state, wire::Fact::Retain)) return Event::PeerRetained;
+  if (!state.timers.state.running() && is_news(state, wire::FaultCode::InDoubt)) return Event::PeerSilent;
+  return while_held(state);
+}
+
+Occurrence in_offered(const State& state) {
+  const bool unanswered = !state.host.alive() && !state.answer_seen;
+  if (!state.timers.state.running() || unanswered) return Event::OfferUnanswered;
+  if (state.bad_hold_ms >= kBadHold_ms) return Event::HoldLost;
+  if (state.announced.fact == wire::Fact::Offer && !state.timers.peer_good.running()) return Event::PeerHolds;
+  return while_held(state);
+}
+
+Occurrence in_relax(const State& state) {
+  if (!peer_holds(state)) return Event::PeerDoubted;
+  if (slipped(state)) return Event::Slip;
+  return state.timers.state.running() ? std::nullopt : Occurrence(Event::PeerWatched);
+}
+
+Occurrence in_opening(const State& state) {
+  const bool decided = state.store.durable() && state.store.record.custody == Custody::Decided;
+  if (decided && clear_of_part(state)) return Event::Opened;
+  return state.timers.state.running() ? std::nullopt : Occurrence(Event::OpenTimeout);
+}
+
+Occurrence in_fault_empty(const State& state) {
+  const bool late = state.store.record.custody == Custody::Decided && clear_of_part(state);
+  return late ? Occurrence(Event::Opened) : std::nullopt;
+}
+
+Occurrence by_state(const State& state) {
+  switch (state.id) {
+    case StateId::Recover:
+      return in_recover(state);
+    case StateId::Seating:
+      return in_seating(state);
+    case StateId::Squeezing:
+      return in_squeezing(state);
+    case StateId::Taken:
+      return in_taken(state);
+    case StateId::Hold:
+      return while_held(state);
+    case StateId::Offered:
+      return in_offered(state);
+    case StateId::Relax:
+      return in_relax(state);
+    case StateId::Resqueeze:
+      return hold_is_stable(state) ? Occurrence(Event::HoldRestored) : std::nullopt;
+    case StateId::Opening:
+      return in_opening(state);
+    case StateId::FaultEmpty:
+      return in_fault_empty(state);
+    default:
+      return std::nullopt;
+  }
+}
+
+bool moves(const State& state, Event event) {
+  return reaction(state.id, event).kind == ReactionKind::Go;
+}
+
+bool giver_stale(const State& state) {
+  switch (state.id) {
+    case StateId::Seating:
+    case StateId::Seated:
+    case StateId::Squeezing:
+    case StateId::Taken: {
+      const Peer* giver = state.peers.find(state.receiving.giver);
+      return giver != nullptr && !giver->custody_fresh.running();
+    }
+    default:
+      return false;
+  }
+}
+
+void track_hold(State& state, std::uint16_t elapsed_ms) {
+  const bool gripping = holds(state.id) || state.id == StateId::Squeezing || state.id == StateId::Resqueeze;
+  if (gripping && holds_well(state)) {
+    state.timers.stable.advance(elapsed_ms);
+  } else {
+    state.timers.stable.start(state.layouts.layout.stable_ms);
+  }
+  const bool answers = holds(state.id) && state.id != StateId::FaultHold && state.id != StateId::Recover;
+  const bool bad = answers && !holds_enough(state);
+  state.bad_hold_ms =
+      bad ? static_cast<std::uint8_t>(std::min(state.bad_hold_ms + elapsed_ms, 100)) : std::uint8_t{0};
+  if (answers && hold_is_stable(state)) {
+    state.hold_proven = true;
+    state.faults.clear(wire::FaultCode::HoldLost);
+  }
+}
+
+void track_peer(State& state, std::uint16_t elapsed_ms) {
+  if (state.id != StateId::Offered) return;
+  if (peer_says(state, wire::Fact::Take)) state.answer_seen = true;
+  if (peer_holds(state)) {
+    state.timers.peer_good.advance(elapsed_ms);
+  } else {
+    state.timers.peer_good.start(kPeerGood_ms);
+  }
+}
+
+}  // namespace
+
+void track(State& state, std::uint16_t elapsed_ms) {
+  track_hold(state, elapsed_ms);
+  track_peer(state, elapsed_ms);
+  follow(state, wire::FaultCode::HostLost, !state.host.alive());
+  follow(state, wire::FaultCode::SupplyAirLow, state.measurement.supply_low);
+  if (!giver_stale(state)) state.faults.clear(wire::FaultCode::PeerLost);
+  const bool another_host = state.host.alive() && state.host.epoch() != state.session_epoch;
+  if (!state.host.alive() || another_host) end_session(state);
+}
+
+std::optional<Event> next_event(const State& state) {
+  if (state.id == StateId::Boot) return in_boot(state);
+  const bool trouble = state.measurement.trouble != SensorTrouble::None;
+  if (trouble && (moves(state, Event::SensorFault) || is_news(state, sensor_fault(state.measurement)))) {
+    return Event::SensorFault;
+  }
+  if (state.store.failed &&
+      (moves(state, Event::StoreFault) || is_news(state, wire::FaultCode::CustodyMemory))) {
+    return Event::StoreFault;
+  }
+  if (!state.host.alive() && moves(state, Event::HostLost)) return Event::HostLost;
+  if (giver_stale(state) && is_news(state, wire::FaultCode::PeerLost)) return Event::PeerLost;
+  return by_state(state);
+}
+
+}  // namespace pinjaw::core

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+
+#include "firmware_sim/core/state.hpp"
+
+/// The questions on which dangerous transitions hang, each a pure function of the state (reliability figures,
+/// section 2.6).
+namespace pinjaw::core {
+
+/// F_lim_eff = min(F_hw, F_layout, F_permit). While nothing is held F_permit is the light squeeze with its
+/// uncertainty; once held it never falls by a timeout.
+std::int32_t force_limit_dn(const State& state);
+
+/// F_req of the committed layout; 0 for a passive station.
+std::int32_t force_required_dn(const State& state);
+
+/// F_low >= F_req; for a passive station every seat switch on.
+bool holds_enough(const State& state);
+
+/// |separation - contact| within the layout's tolerance.
+bool separation_in_window(const State& state);
+
+/// The jaws have moved by more than the slip tolerance since the part was gripped.
+bool slipped(const State& state);
+
+/// G_hold, without its time: holds_enough, F_high within the limit, separation in the window, no slip,
+/// sensors good.
+bool holds_well(const State& state);
+
+/// G_hold for t_stable.
+bool hold_is_stable(const State& state);
+
+/// G_peer, without its time: the named receiver says TAKE of this token and pair, is TAKEN and stable with
+/// its F_req, all of it fresh, and reports no fault for which it must hold.
+bool peer_holds(const State& state);
+
+/// The peer of the record says `fact` of the record's token and pair to this node. Facts do not age.
+bool peer_says(const State& state, wire::Fact fact);
+
+/// The giver that this node accepted still offers, or has taken back, that token; fresh.
+bool giver_answers_for_part(const State& state);
+
+/// Sensors prove that nothing is between the jaws: fully open, fully closed or closed past the part, with no
+/// squeeze; for a passive station every seat switch off.
+bool no_part_proven(const State& state);
+
+/// The jaws are so far from the part that it is free.
+bool clear_of_part(const State& state);
+
+/// The jaws are where the layout wants them before a part comes.
+bool fully_open(const State& state);
+
+/// The fault that the sensors' trouble is.
+wire::FaultCode sensor_fault(const Measurement& measurement);
+
+/// Supply or sensors are such that the node must neither give nor take.
+bool degraded(const State& state);
+
+}  // namespace pinjaw::core

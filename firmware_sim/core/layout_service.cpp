@@ -1,0 +1,208 @@
+#include "firmware_sim/core/layout_service.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <span>
+
+#include "firmware_sim/core/sending.hpp"
+#include "firmware_sim/core/transitions.hpp"
+#include "protocol/wire/identification.hpp"
+
+namespace pinjaw::core {
+namespace {
+
+using wire::TransferStatus;
+
+std::span<const std::uint8_t> bytes_of(const LayoutBlob& blob) {
+  return std::span(blob.bytes).first(blob.size);
+}
+
+wire::LayoutTarget target_of(const Config& config) {
+  return {.node = config.node,
+          .node_class = config.passive ? wire::NodeClass::Passive : wire::NodeClass::Gripper,
+          .kit_id = config.kit_id,
+          .f_hardware_dn = static_cast<std::uint16_t>(config.hardware_limit_dn),
+          .f_uncertainty_dn = static_cast<std::uint16_t>(config.uncertainty_dn)};
+}
+
+void take_up_layout(State& state, const wire::Layout& layout, const LayoutBlob& blob) {
+  state.layouts.committed = true;
+  state.layouts.layout = layout;
+  state.layouts.crc = wire::layout_crc_of(layout);
+  state.layouts.blob = blob;
+  state.layouts.staged.size = 0;
+  state.peers.follow(layout);
+}
+
+/// An answer under construction.
+class Answer {
+ public:
+  Answer(std::uint8_t service, std::uint8_t transaction, TransferStatus status) : out_(bytes_) {
+    out_.put(service | wire::kResponseBit, 1);
+    out_.put(transaction, 1);
+    out_.put(static_cast<std::uint8_t>(status), 1);
+  }
+  wire::ByteWriter& body() { return out_; }
+  void start(wire::TransferSender& sender) const { sender.start(std::span(bytes_).first(out_.used())); }
+
+ private:
+  std::array<std::uint8_t, wire::kMaxTransferBytes> bytes_{};
+  wire::ByteWriter out_;
+};
+
+void answer_status(State& state, std::uint8_t service, std::uint8_t transaction, TransferStatus status) {
+  Answer(service, transaction, status).start(state.service.sender);
+}
+
+void answer_commit(State& state, std::uint8_t transaction) {
+  Answer answer(static_cast<std::uint8_t>(wire::Service::Commit), transaction, TransferStatus::Ok);
+  answer.body().put(state.layouts.crc, 4);
+  answer.start(state.service.sender);
+}
+
+TransferStatus write(State& state, std::span<const std::uint8_t> body) {
+  if (!apply(state, Event::CmdWrite)) return TransferStatus::WrongState;
+  state.layouts.staged.size = 0;
+  const auto layout = wire::decode_layout(body);
+  if (!layout) return layout.error();
+  std::copy(body.begin(), body.end(), state.layouts.staged.bytes.begin());
+  state.layouts.staged.size = static_cast<std::uint16_t>(body.size());
+  return TransferStatus::Ok;
+}
+
+/// Ok where the layout is now being stored, or was committed already.
+TransferStatus commit(State& state, std::uint32_t crc) {
+  const LayoutBlob& staged = state.layouts.staged;
+  if (staged.size == 0) {
+    const bool again = state.layouts.committed && state.layouts.crc == crc;
+    return again ? TransferStatus::Ok : TransferStatus::NothingStaged;
+  }
+  const auto layout = wire::decode_layout(bytes_of(staged));
+  if (!layout) return layout.error();
+  if (wire::layout_crc_of(*layout) != crc) return TransferStatus::CommitDiffers;
+  const TransferStatus status = wire::admissible(*layout, target_of(state.config));
+  if (status != TransferStatus::Ok) {
+    state.faults.note(wire::FaultCode::LayoutRefused);
+    return status;
+  }
+  if (!apply(state, Event::CmdCommit)) return TransferStatus::WrongState;
+  take_up_layout(state, *layout, LayoutBlob(staged));
+  state.store.layout_waits = true;
+  return TransferStatus::Ok;
+}
+
+void serve_write(State& state, std::uint8_t transaction, std::span<const std::uint8_t> body) {
+  const TransferStatus status = write(state, body);
+  Answer answer(static_cast<std::uint8_t>(wire::Service::Write), transaction, status);
+  if (status == TransferStatus::Ok) {
+    answer.body().put(wire::layout_crc_of(*wire::decode_layout(body)), 4);
+  }
+  answer.start(state.service.sender);
+}
+
+void serve_commit(State& state, std::uint8_t transaction, std::span<const std::uint8_t> body) {
+  wire::ByteReader in(body);
+  const std::uint32_t crc = in.take(4);
+  const bool well_formed = !in.truncated() && in.left() == 0;
+  const TransferStatus status = well_formed ? commit(state, crc) : TransferStatus::Length;
+  if (status != TransferStatus::Ok) {
+    return answer_status(state, static_cast<std::uint8_t>(wire::Service::Commit), transaction, status);
+  }
+  state.service.commit_waits = true;
+  state.service.commit_transaction = transaction;
+}
+
+void serve_readback(State& state, std::uint8_t transaction) {
+  const auto service = static_cast<std::uint8_t>(wire::Service::Readback);
+  const std::span<const std::uint8_t> layout = bytes_of(state.layouts.blob);
+  if (!state.layouts.committed)
+    return answer_status(state, service, transaction, TransferStatus::NothingStaged);
+  Answer answer(service, transaction, TransferStatus::Ok);
+  for (const std::uint8_t byte : layout) answer.body().put(byte, 1);
+  answer.start(state.service.sender);
+}
+
+void serve_identify(State& state, std::uint8_t transaction) {
+  const wire::LayoutTarget target = target_of(state.config);
+  Answer answer(static_cast<std::uint8_t>(wire::Service::Identify), transaction, TransferStatus::Ok);
+  wire::Identification{.node = target.node,
+                       .node_class = target.node_class,
+                       .kit_id = target.kit_id,
+                       .f_hardware_dn = target.f_hardware_dn,
+                       .f_uncertainty_dn = target.f_uncertainty_dn,
+                       .layout_crc = state.layouts.crc,
+                       .layout_committed = state.layouts.committed}
+      .put(answer.body());
+  answer.start(state.service.sender);
+  state.identity_burst = true;
+  state.identity_page = 0;
+}
+
+void serve_log(State& state, std::uint8_t transaction) {
+  Answer answer(static_cast<std::uint8_t>(wire::Service::Log), transaction, TransferStatus::Ok);
+  answer.body().put(state.counters.bad_frames, 4);
+  answer.body().put(state.counters.events_ignored, 4);
+  answer.body().put(state.counters.events_refused, 4);
+  answer.body().put(state.counters.frames_not_sent, 4);
+  answer.body().put(state.counters.steps, 4);
+  answer.start(state.service.sender);
+}
+
+void serve(State& state, std::span<const std::uint8_t> request) {
+  if (request.size() < wire::kRequestHeader) return;
+  const std::uint8_t transaction = request[1];
+  const std::span<const std::uint8_t> body = request.subspan(wire::kRequestHeader);
+  switch (request[0]) {
+    case static_cast<unsigned>(wire::Service::Write):
+      return serve_write(state, transaction, body);
+    case static_cast<unsigned>(wire::Service::Commit):
+      return serve_commit(state, transaction, body);
+    case static_cast<unsigned>(wire::Service::Readback):
+      return serve_readback(state, transaction);
+    case static_cast<unsigned>(wire::Service::Identify):
+      return serve_identify(state, transaction);
+    case static_cast<unsigned>(wire::Service::Log):
+      return serve_log(state, transaction);
+    default:
+      return answer_status(state, request[0], transaction, TransferStatus::UnknownService);
+  }
+}
+
+void send_segment(State& state, SendQueue& queue, const wire::Payload& data) {
+  const wire::Identifier id{wire::MessageType::TransferResponse, state.config.node};
+  send(state, queue, wire::pack_segment({id, data}));
+}
+
+}  // namespace
+
+void take_segment(State& state, const wire::Segment& segment, SendQueue& queue) {
+  if (wire::kind_of(segment.data) == wire::SegmentKind::FlowControl)
+    return state.service.sender.accept(segment.data);
+  if (const auto flow = state.service.receiver.accept(segment.data)) send_segment(state, queue, *flow);
+  if (const auto request = state.service.receiver.take()) serve(state, *request);
+}
+
+void advance_service(State& state, std::uint16_t elapsed_ms, SendQueue& queue) {
+  LayoutService& service = state.service;
+  service.receiver.advance(elapsed_ms);
+  if (service.commit_waits && (state.store.failed || state.store.durable())) {
+    service.commit_waits = false;
+    if (state.store.failed) {
+      answer_status(state, static_cast<std::uint8_t>(wire::Service::Commit), service.commit_transaction,
+                    TransferStatus::Memory);
+    } else {
+      answer_commit(state, service.commit_transaction);
+    }
+  }
+  if (const auto segment = service.sender.advance(elapsed_ms)) send_segment(state, queue, *segment);
+}
+
+bool restore_layout(State& state, const LayoutBlob& blob) {
+  if (blob.size == 0 || blob.size > blob.bytes.size()) return false;
+  const auto layout = wire::decode_layout(bytes_of(blob));
+  if (!layout || wire::admissible(*layout, target_of(state.config)) != TransferStatus::Ok) return false;
+  take_up_layout(state, *layout, blob);
+  return true;
+}
+
+}  // namespace pinjaw::core

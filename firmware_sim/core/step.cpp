@@ -1,0 +1,126 @@
+#include <algorithm>
+
+#include "firmware_sim/core/commands.hpp"
+#include "firmware_sim/core/core.hpp"
+#include "firmware_sim/core/custody.hpp"
+#include "firmware_sim/core/events.hpp"
+#include "firmware_sim/core/force_control.hpp"
+#include "firmware_sim/core/force_guard.hpp"
+#include "firmware_sim/core/guards.hpp"
+#include "firmware_sim/core/layout_service.hpp"
+#include "firmware_sim/core/release_guard.hpp"
+#include "firmware_sim/core/sending.hpp"
+#include "firmware_sim/core/telemetry.hpp"
+#include "firmware_sim/core/transitions.hpp"
+#include "protocol/wire/dispatch.hpp"
+
+namespace pinjaw::core {
+namespace {
+
+constexpr int kEventsPerStep = 4;  // boot, recovery and what follows settle in one step; no chain is longer
+constexpr std::uint16_t kSessionBlock = 16;
+
+/// Takes each parsed message to whom it concerns.
+struct Listener {
+  State& state;
+  SendQueue& queue;
+
+  [[nodiscard]] bool is_mine(std::uint8_t node) const { return node == state.config.node; }
+
+  void operator()(const wire::Received<wire::GlobalHold>&) const { apply(state, Event::CmdHold); }
+  void operator()(const wire::Received<wire::HostHeartbeat>& heartbeat) const {
+    state.host.hear(heartbeat, state.config.node);
+  }
+  void operator()(const wire::Received<wire::Command>& command) const {
+    if (!is_mine(command.label.node)) return;
+    const wire::Acknowledge answer = obey(state, command.message);
+    send(state, queue, wire::pack(answer, {.node = state.config.node}));
+  }
+  void operator()(const wire::Segment& segment) const {
+    if (segment.identifier.type != wire::MessageType::TransferRequest) return;
+    if (is_mine(segment.identifier.node)) take_segment(state, segment, queue);
+  }
+  void operator()(const wire::Received<wire::Custody>& custody) const { from_peer(custody); }
+  void operator()(const wire::Received<wire::NodeState>& status) const { from_peer(status); }
+  void operator()(const wire::Received<wire::FaultReport>& fault) const { from_peer(fault); }
+
+  /// What no controller acts on.
+  void operator()(const wire::Received<wire::HostTime>&) const {}
+  template <class Message>
+  void operator()(const wire::Received<Message>& other) const {
+    if (is_mine(other.label.node)) raise(state, wire::FaultCode::OwnIdSeen);
+  }
+
+  template <class Message>
+  void from_peer(const wire::Received<Message>& message) const {
+    if (is_mine(message.label.node)) return raise(state, wire::FaultCode::OwnIdSeen);
+    state.peers.hear(message);
+  }
+};
+
+void listen(State& state, const Inputs& inputs, SendQueue& queue) {
+  const Listener listener{state, queue};
+  for (const wire::Frame& frame : inputs.received) {
+    if (wire::dispatch(frame, listener)) ++state.counters.bad_frames;
+  }
+}
+
+void let_time_pass(State& state, std::uint16_t elapsed_ms) {
+  state.host.advance(elapsed_ms);
+  state.peers.advance(elapsed_ms);
+  state.timers.state.advance(state.frozen ? std::uint16_t{0} : elapsed_ms);
+  state.timers.challenge.advance(elapsed_ms);
+}
+
+void react(State& state) {
+  for (int i = 0; i < kEventsPerStep; ++i) {
+    const std::optional<Event> event = next_event(state);
+    if (!event || !apply(state, *event)) return;
+  }
+}
+
+Valves decide_valves(State& state, const Inputs& inputs) {
+  if (state.config.passive) return Valves{};
+  const Valves wanted = release_guarded(state, wanted_valves(state, inputs.elapsed_ms));
+  return guarded(state.config, force_limit_dn(state), inputs.sensors, inputs.elapsed_ms, wanted, state.guard);
+}
+
+}  // namespace
+
+State power_on(const Config& config, const NvmImage& image) {
+  State state;
+  state.config = config;
+  state.store.readable = image.readable;
+  NvmRecord record = image.record.value_or(NvmRecord{});
+  ++record.boot_count;
+  state.next_session = record.session_block;
+  record.session_block = static_cast<std::uint16_t>(record.session_block + kSessionBlock);
+  state.permit_dn = record.permit_dn;
+  if (image.readable) {
+    restore_layout(state, image.layout);
+    save(state.store, record);
+  }
+  state.timers.force.start(wire::kForceOffset_ms);
+  return state;
+}
+
+Outputs step(State& state, const Inputs& inputs) {
+  Outputs outputs;
+  const auto elapsed_ms = static_cast<std::uint16_t>(std::min(inputs.elapsed_ms, 60000U));
+  const Announcement said_before = state.announced;
+  ++state.counters.steps;
+  let_time_pass(state, elapsed_ms);
+  acknowledge(state.store, inputs.nvm);
+  observe(state.config, inputs.sensors, elapsed_ms, state.measurement);
+  listen(state, inputs, outputs.send);
+  track(state, elapsed_ms);
+  react(state);
+  announce(state);
+  outputs.valves = decide_valves(state, inputs);
+  advance_service(state, elapsed_ms, outputs.send);
+  report(state, elapsed_ms, outputs.valves, said_before, outputs.send);
+  outputs.nvm = flush(state.store, state.layouts.blob);
+  return outputs;
+}
+
+}  // namespace pinjaw::core

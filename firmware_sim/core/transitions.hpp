@@ -1,0 +1,18 @@
+#pragma once
+
+#include "firmware_sim/core/state.hpp"
+
+namespace pinjaw::core {
+
+/// What the table makes of `event` in the present state, done: the change of state with its actions, or the
+/// note of an event that changes none. False where the table ignores or refuses it; then nothing but a
+/// counter changes.
+bool apply(State& state, Event event);
+
+/// Sets a fault. One for which the node must hold ends the session.
+void raise(State& state, wire::FaultCode code);
+
+/// Closes the session: whatever is dangerous needs a new ARM.
+void end_session(State& state);
+
+}  // namespace pinjaw::core
