@@ -1,0 +1,27 @@
+#include "protocol/socketcan/send_queue.hpp"
+
+#include <algorithm>
+
+namespace pinjaw::socketcan {
+
+bool SendQueue::push(const wire::Frame& frame, std::int64_t now_us) {
+  if (waiting_.size() >= kMostFrames) return false;
+  const auto place =
+      std::upper_bound(waiting_.begin(), waiting_.end(), frame.id,
+                       [](std::uint32_t id, const Waiting& other) { return id < other.frame.id; });
+  waiting_.insert(place, {frame, now_us});
+  return true;
+}
+
+WriteResult SendQueue::flush(std::int64_t now_us, const Writer& write) {
+  dropped_ += std::erase_if(
+      waiting_, [now_us](const Waiting& waiting) { return now_us - waiting.since_us > kStale_us; });
+  while (!waiting_.empty()) {
+    const WriteResult result = write(waiting_.front().frame);
+    if (result != WriteResult::Taken) return result;
+    waiting_.erase(waiting_.begin());
+  }
+  return WriteResult::Taken;
+}
+
+}  // namespace pinjaw::socketcan
