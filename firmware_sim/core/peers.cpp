@@ -1,7 +1,5 @@
 #include "firmware_sim/core/peers.hpp"
 
-#include <utility>
-
 namespace pinjaw::core {
 namespace {
 constexpr std::uint16_t kFaultKept_ms = 3 * wire::kFaultPeriod_ms + 20;  // as long as three reports
@@ -12,6 +10,13 @@ void Peers::follow(const wire::Layout& layout) {
   for (std::size_t i = 0; i < layout.used_peers().size(); ++i) nodes_[i] = layout.used_peers()[i].node;
 }
 
+Peer* Peers::slot_of(std::uint8_t node) {
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    if (nodes_[i] == node && node != 0) return &peers_[i];
+  }
+  return nullptr;
+}
+
 const Peer* Peers::find(std::uint8_t node) const {
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     if (nodes_[i] == node && node != 0) return &peers_[i];
@@ -19,19 +24,16 @@ const Peer* Peers::find(std::uint8_t node) const {
   return nullptr;
 }
 
-Peer* Peers::find(std::uint8_t node) {
-  return const_cast<Peer*>(std::as_const(*this).find(node));
-}
-
 void Peers::hear(const wire::Received<wire::Custody>& custody) {
-  Peer* peer = find(custody.label.node);
+  Peer* peer = slot_of(custody.label.node);
   if (peer == nullptr) return;
-  if (peer->custody_reception.accept(custody.label.counter, wire::kPeerFresh_ms))
-    peer->custody = custody.message;
+  if (peer->custody_counter.accept(custody.label.counter) != wire::CounterVerdict::Qualified) return;
+  peer->custody = custody.message;
+  peer->custody_fresh.start(wire::kPeerFresh_ms);
 }
 
 void Peers::hear(const wire::Received<wire::NodeState>& state) {
-  Peer* peer = find(state.label.node);
+  Peer* peer = slot_of(state.label.node);
   if (peer == nullptr) return;
   if (peer->state_counter.accept(state.label.counter) != wire::CounterVerdict::Qualified) return;
   peer->state = state.message;
@@ -39,7 +41,7 @@ void Peers::hear(const wire::Received<wire::NodeState>& state) {
 }
 
 void Peers::hear(const wire::Received<wire::FaultReport>& fault) {
-  Peer* peer = find(fault.label.node);
+  Peer* peer = slot_of(fault.label.node);
   if (peer == nullptr || fault.message.severity < wire::Severity::Hold) return;
   if (fault.message.active) {
     peer->faulty.start(kFaultKept_ms);

@@ -39,7 +39,7 @@ class Peers {
   [[nodiscard]] const Peer* find(std::uint8_t node) const;
 
  private:
-  Peer* find(std::uint8_t node);
+  Peer* slot_of(std::uint8_t node);
 
   std::array<std::uint8_t, wire::kMaxPeers> nodes_{};  ///< 0: unused
   std::array<Peer, wire::kMaxPeers> peers_{};
