@@ -16,27 +16,27 @@ namespace pinjaw::planner {
 
 /// How tall one pin stands and where it touches the part: z in the part frame turned by the task's side.
 struct PinHeight {
-  double contact_min_mm = 0;        ///< lowest part surface over a pin eps thicker (up-large)
-  double height_max_mm = 0;         ///< lowest part surface over a pin eps thinner (up-small); +inf at a silhouette
-  double contact_max_mm = 0;        ///< highest part surface under height_max over a pin eps thicker (down-large)
-  double z_edge_mm = 0;             ///< lowest part surface eps inside the foot
-  double top_mm = 0;                ///< of the pin
-  double length_mm = 0;             ///< from the plate to the top
-  model::Interval contact_z_mm;     ///< part surface within 2 eps of the foot, below top; one point where lo == hi
+  double contact_min_mm = 0;  ///< lowest part surface over a pin eps thicker (up-large)
+  double height_max_mm = 0;   ///< lowest part surface over a pin eps thinner (up-small); +inf at a silhouette
+  double contact_max_mm = 0;  ///< highest part surface under height_max over a pin eps thicker (down-large)
+  double z_edge_mm = 0;       ///< lowest part surface eps inside the foot
+  double top_mm = 0;          ///< of the pin
+  double length_mm = 0;       ///< from the plate to the top
+  model::Interval
+      contact_z_mm;  ///< part surface within 2 eps of the foot, below top; one point where lo == hi
 };
 
 /// Why a pin has no height.
 enum class HeightLoss {
-  NoPartAtFoot,     ///< no part above the point eps inside the foot
-  NoSurfaceAtFoot,  ///< no part surface within 2 eps of the foot below the pin's top
+  NoSurfaceAtFoot,  ///< no part above the point eps inside the foot, or none within 2 eps of it below the
+                    ///< pin's top
   NoStockLength,    ///< every stock length is too long
   StockTooShort,    ///< the longest stock length that fits does not reach the engagement
   NoEngagement,     ///< the room above the foot's edge is under the engagement
 };
-inline constexpr std::array kHeightLosses{HeightLoss::NoPartAtFoot, HeightLoss::NoSurfaceAtFoot,
-                                          HeightLoss::NoStockLength, HeightLoss::StockTooShort,
-                                          HeightLoss::NoEngagement};
-/// The name in reports: `no_part_at_foot`.
+inline constexpr std::array kHeightLosses{HeightLoss::NoSurfaceAtFoot, HeightLoss::NoStockLength,
+                                          HeightLoss::StockTooShort, HeightLoss::NoEngagement};
+/// The name in reports: `no_surface_at_foot`.
 std::string_view to_string(HeightLoss loss);
 
 using PinHeightOutcome = base::Expected<PinHeight, HeightLoss>;
@@ -56,13 +56,14 @@ struct Foot {
   geometry::Vector2d n_P = geometry::Vector2d::UnitX();  ///< unit, from the pin into the part
 };
 
-/// z of the plates' tops: the lowest z of the turned part and of what is attached to it, less the kit's plate gap.
+/// z of the plates' tops: the lowest z of the turned part and of what is attached to it, less the kit's plate
+/// gap.
 double plate_top_mm(const model::Kit& kit, const geometry::Surface& part,
                     std::span<const geometry::Surface> attached = {});
 
-/// Finds pin heights on one part (DESIGN 3 phase 3; 3.1 nos 1, 2, 7, 8). A height depends on the foot alone, so each
-/// foot is worked out once, at its place rounded to 1e-7 mm, and remembered. May be used from many threads; answers
-/// do not depend on their order.
+/// Finds pin heights on one part (DESIGN 3 phase 3; 3.1 nos 1, 2, 7, 8). A height depends on the foot alone,
+/// so each foot is worked out once, at its place rounded to 1e-7 mm, and remembered. May be used from many
+/// threads; answers do not depend on their order.
 class Heights {
  public:
   /// `part` is the base part's surface, turned by the task's side; `plate_top_mm` as by plate_top_mm().

@@ -1,10 +1,9 @@
 #pragma once
 
 #include <array>
-#include <optional>
+#include <cstddef>
 #include <span>
 #include <string_view>
-#include <vector>
 
 #include "host/base/expected.hpp"
 #include "host/geometry/surface.hpp"
@@ -20,11 +19,13 @@ enum class LoadingLoss {
   NoShift,    ///< no column shift brings the jaw separation into range, or the pins do not fit the plates
   NoOpening,  ///< the jaws cannot open by kLeastOpeningMm each
   PinSweep,   ///< a pin meets the part on its way from open to closed
-  PinMeetsObstacle,  ///< a pin meets an obstacle or attached part, closing or while the open gripper comes along z
+  PinMeetsObstacle,    ///< a pin meets an obstacle or attached part, closing or while the open gripper comes
+                       ///< along z
   PlateMeetsObstacle,  ///< a plate meets the part, an obstacle or attached part
 };
-inline constexpr std::array kLoadingLosses{LoadingLoss::NoShift, LoadingLoss::NoOpening, LoadingLoss::PinSweep,
-                                           LoadingLoss::PinMeetsObstacle, LoadingLoss::PlateMeetsObstacle};
+inline constexpr std::array kLoadingLosses{LoadingLoss::NoShift, LoadingLoss::NoOpening,
+                                           LoadingLoss::PinSweep, LoadingLoss::PinMeetsObstacle,
+                                           LoadingLoss::PlateMeetsObstacle};
 /// The name in reports: `no_shift`.
 std::string_view to_string(LoadingLoss loss);
 
@@ -38,14 +39,14 @@ enum class SweepHeights {
 
 /// What the gripper must not touch, in the part frame turned by the task's side.
 struct Surroundings {
-  const geometry::Surface* part = nullptr;         ///< the base part; not null
-  std::span<const geometry::Surface> others;       ///< attached parts and obstacles
-  double plate_top_mm = 0;                         ///< as by plate_top_mm() of phase 3
+  const geometry::Surface* part = nullptr;    ///< the base part; not null
+  std::span<const geometry::Surface> others;  ///< attached parts and obstacles
+  double plate_top_mm = 0;                    ///< as by plate_top_mm() of phase 3
 };
 
-/// A pin of a planar fixture with the height that phase 3 found.
+/// The height that phase 3 found for one pin of a planar fixture.
 struct PinToLoad {
-  PlanarPin planar;
+  std::size_t pin = 0;  ///< its place in the fixture's pins
   double length_mm = 0;
   double top_mm = 0;
   model::Interval contact_z_mm;
@@ -62,23 +63,14 @@ struct LoadingOptions {
   JawMotion motion = JawMotion::Closes;
 };
 
-/// The column shifts of a fixture that bring s into range with all columns on the plates, least first: fewer columns
-/// moved, then more of them on the left jaw.
-std::vector<ColumnShift> column_shifts(const PlanarFixture& fixture, const model::Kit& kit);
-
-/// How many rows the canonical pins move so that they stand in the middle of the plate (half rows downwards);
-/// nothing where they do not fit.
-std::optional<int> centred_row_shift(std::span<const PlanarPin> pins, const model::Grid& grid);
-
-/// X_GP of the turned part, the canonical pins being moved by `shift` and `row_shift`.
-geometry::Pose2 part_pose(const PlanarFixture& fixture, const model::Grid& grid, const ColumnShift& shift, int row_shift);
-
-/// The geometry of the design at the least shift that loads, the other loading shifts as its alternatives; id and
-/// squeeze are left empty.
+/// The geometry of the design at the least column shift that loads, rows centred; the other loading shifts as
+/// its alternatives. Id and squeeze are left empty.
 ///
-/// Rule of contact: every pin sweeps with radius r - eps, the thinner pin of phase 3, so that the contact itself is no
-/// hit; what lies above the pin's top is none either. Obstacles and attached parts must stay clear of the full pin and
-/// of the plates by the kit's clearance. `pins` are those of the fixture that stand (all four; a pallet's three).
+/// Rule of contact: every pin sweeps with radius r - eps, the thinner pin of phase 3, so that the contact
+/// itself is no hit; nor is what lies above the pin's top. Since a pin is a column from below, a sweep that
+/// misses the part also clears the way along z. Obstacles and attached parts must stay clear of the full pins
+/// by the kit's clearance, and of the plates by it in plan. `pins` are those of the fixture that stand, in
+/// its order: all four; a pallet's three.
 base::Expected<model::Design, LoadingLoss> load(const PlanarFixture& fixture, std::span<const PinToLoad> pins,
                                                 const model::Kit& kit, const Surroundings& surroundings,
                                                 const LoadingOptions& options = {});

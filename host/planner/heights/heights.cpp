@@ -1,0 +1,109 @@
+#include "host/planner/heights/heights.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <mutex>
+#include <unordered_map>
+
+namespace pinjaw::planner {
+namespace {
+
+/// Steps of a foot's place and normal, so that one foot met twice with different rounding is one. Chosen: far
+/// under eps.
+constexpr double kFootStepMm = 1e-7;
+constexpr double kNormalStep = 1e-9;
+constexpr std::size_t kShards = 64;  ///< chosen: many more than threads
+
+using Key = std::array<std::int64_t, 4>;
+
+std::int64_t steps(double value, double step) {
+  return std::llround(value / step);
+}
+
+Key key_of(const Foot& foot) {
+  return {steps(foot.p_PFoot_mm.x(), kFootStepMm), steps(foot.p_PFoot_mm.y(), kFootStepMm),
+          steps(foot.n_P.x(), kNormalStep), steps(foot.n_P.y(), kNormalStep)};
+}
+
+Foot foot_of(const Key& key) {
+  return {{static_cast<double>(key[0]) * kFootStepMm, static_cast<double>(key[1]) * kFootStepMm},
+          {static_cast<double>(key[2]) * kNormalStep, static_cast<double>(key[3]) * kNormalStep}};
+}
+
+struct KeyHash {
+  std::size_t operator()(const Key& key) const {
+    std::uint64_t h = 0;
+    for (const std::int64_t part : key) {
+      h = (h ^ static_cast<std::uint64_t>(part)) * 0x9e3779b97f4a7c15U;
+      h ^= h >> 32U;
+    }
+    return static_cast<std::size_t>(h);
+  }
+};
+
+struct Shard {
+  std::mutex mutex;
+  std::unordered_map<Key, PinHeightOutcome, KeyHash> known;
+};
+
+}  // namespace
+
+std::string_view to_string(HeightLoss loss) {
+  switch (loss) {
+    case HeightLoss::NoSurfaceAtFoot:
+      return "no_surface_at_foot";
+    case HeightLoss::NoStockLength:
+      return "no_stock_length";
+    case HeightLoss::StockTooShort:
+      return "stock_too_short";
+    case HeightLoss::NoEngagement:
+      return "no_engagement";
+  }
+  return "?";
+}
+
+double plate_top_mm(const model::Kit& kit, const geometry::Surface& part,
+                    std::span<const geometry::Surface> attached) {
+  double lowest_mm = part.z_range_mm().lo;
+  for (const geometry::Surface& other : attached) lowest_mm = std::min(lowest_mm, other.z_range_mm().lo);
+  return lowest_mm - kit.jaws.plate_gap_mm;
+}
+
+struct Heights::Impl {
+  geometry::Surface part;
+  model::PinStock pins;
+  double plate_top_mm;
+  std::array<Shard, kShards> shards;
+};
+
+Heights::Heights(const geometry::Surface& part, const model::PinStock& pins, double plate_top_mm)
+    : impl_(std::make_unique<Impl>(part, pins, plate_top_mm)) {}
+
+Heights::~Heights() = default;
+
+PinHeightOutcome Heights::at(const Foot& foot) const {
+  const Key key = key_of(foot);
+  Shard& shard = impl_->shards[KeyHash{}(key) % kShards];
+  {
+    const std::lock_guard lock(shard.mutex);
+    if (const auto found = shard.known.find(key); found != shard.known.end()) return found->second;
+  }
+  const PinHeightOutcome outcome = pin_height(impl_->part, impl_->pins, impl_->plate_top_mm, foot_of(key));
+  const std::lock_guard lock(shard.mutex);
+  shard.known.emplace(key, outcome);
+  return outcome;
+}
+
+base::Expected<FixtureHeights, FixtureHeightLoss> Heights::of(const PlanarFixture& fixture) const {
+  FixtureHeights heights;
+  for (std::size_t i = 0; i < fixture.pins.size(); ++i) {
+    const PlanarPin& pin = fixture.pins[i];
+    const PinHeightOutcome outcome = at({pin.p_PFoot_mm, pin.n_P});
+    if (!outcome) return tl::unexpected(FixtureHeightLoss{i, outcome.error()});
+    heights[i] = *outcome;
+  }
+  return heights;
+}
+
+}  // namespace pinjaw::planner

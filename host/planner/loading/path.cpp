@@ -1,0 +1,110 @@
+#include "host/planner/loading/path.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "host/model/tolerance.hpp"
+
+namespace pinjaw::planner {
+namespace {
+
+using geometry::Rectangle;
+using geometry::Slab;
+using geometry::Surface;
+using geometry::Sweep;
+using geometry::Vector2d;
+using model::JawSide;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// What lies on a plate touches it and does not meet it.
+constexpr double kRestingMm = 1e-6;
+
+double sign_of_outwards(JawSide jaw) {
+  return jaw == JawSide::Left ? -1 : 1;
+}
+
+}  // namespace
+
+Path::Path(const PlanarFixture& fixture, std::span<const PinToLoad> pins, const model::Kit& kit,
+           const Surroundings& surroundings, const LoadingOptions& options)
+    : kit_(kit), surroundings_(surroundings), options_(options), blocked_mm_(kInfinity) {
+  const Vector2d x_P = geometry::direction(-fixture.theta_rad);
+  for (const PinToLoad& pin : pins) {
+    const PlanarPin& planar = fixture.pins[pin.pin];
+    pins_.push_back({.closed_mm = planar.p_PFoot_mm - kit.pins.radius_mm * planar.n_P,
+                     .outwards = sign_of_outwards(planar.hole.jaw) * x_P,
+                     .top_mm = options.sweeps == SweepHeights::Infinite ? kInfinity : pin.top_mm});
+    if (std::find(jaws_.begin(), jaws_.end(), planar.hole.jaw) == jaws_.end())
+      jaws_.push_back(planar.hole.jaw);
+  }
+}
+
+std::optional<LoadingLoss> Path::loss_at(const PlacedFixture& placed) {
+  double opening_mm = 0;
+  if (options_.motion == JawMotion::Closes) {
+    opening_mm =
+        (model::open_separation_mm(kit_.jaws, placed.jaw_separation_mm) - placed.jaw_separation_mm) / 2;
+    if (opening_mm < kLeastOpeningMm) return LoadingLoss::NoOpening;
+  }
+  if (opening_mm >= blocked_mm_ || pins_meet_part(opening_mm)) {
+    blocked_mm_ = std::min(blocked_mm_, opening_mm);
+    return LoadingLoss::PinSweep;
+  }
+  if (pins_meet_others(opening_mm)) return LoadingLoss::PinMeetsObstacle;
+  if (plates_meet_anything(placed, opening_mm)) return LoadingLoss::PlateMeetsObstacle;
+  return std::nullopt;
+}
+
+bool Path::pins_meet_part(double opening_mm) const {
+  return std::any_of(pins_.begin(), pins_.end(), [&](const Pin& pin) {
+    const Sweep sweep{pin.closed_mm, pin.closed_mm + opening_mm * pin.outwards,
+                      kit_.pins.radius_mm - model::kEpsMm};
+    return surroundings_.part->meets(sweep, Slab{.hi_mm = pin.top_mm});
+  });
+}
+
+bool Path::pins_meet_others(double opening_mm) const {
+  const double clearance_mm = kit_.pins.clearance_mm;
+  const double radius_mm = kit_.pins.radius_mm + clearance_mm;
+  for (const Pin& pin : pins_) {
+    const Vector2d open_mm = pin.closed_mm + opening_mm * pin.outwards;
+    const Slab standing{surroundings_.plate_top_mm, pin.top_mm + clearance_mm};
+    const Slab coming{.hi_mm = pin.top_mm + clearance_mm};
+    for (const Surface& other : surroundings_.others) {
+      if (other.meets(Sweep{pin.closed_mm, open_mm, radius_mm}, standing)) return true;
+      if (other.meets(Sweep{open_mm, open_mm, radius_mm}, coming)) return true;
+    }
+  }
+  return false;
+}
+
+Rectangle Path::plate(const PlacedFixture& placed, JawSide jaw, const geometry::Interval& opening_mm) const {
+  const model::Grid& grid = kit_.grid;
+  const double width_mm = 2 * grid.edge_offset_mm + (grid.columns - 1) * grid.spacing_mm;
+  const double inner_mm = placed.jaw_separation_mm / 2 + opening_mm.lo;
+  const double outer_mm = placed.jaw_separation_mm / 2 + opening_mm.hi + width_mm;
+  const double half_y_mm = grid.edge_offset_mm + (grid.rows - 1) / 2.0 * grid.spacing_mm;
+  const geometry::Pose2 X_PG = placed.part_pose.inverse();
+  const double clearance_mm = kit_.pins.clearance_mm;
+  return {.center_mm = X_PG * Vector2d(sign_of_outwards(jaw) * (inner_mm + outer_mm) / 2, 0),
+          .direction = X_PG.turned(Vector2d::UnitX()),
+          .half_mm = {(outer_mm - inner_mm) / 2 + clearance_mm, half_y_mm + clearance_mm}};
+}
+
+bool Path::plates_meet_anything(const PlacedFixture& placed, double opening_mm) const {
+  const double top_mm = surroundings_.plate_top_mm - kRestingMm;
+  const Slab standing{surroundings_.plate_top_mm - kit_.jaws.plate_thickness_mm, top_mm};
+  const Slab coming{.hi_mm = top_mm};
+  return std::any_of(jaws_.begin(), jaws_.end(), [&](JawSide jaw) {
+    const Rectangle swept = plate(placed, jaw, {0, opening_mm});
+    const Rectangle open = plate(placed, jaw, {opening_mm, opening_mm});
+    const auto in_the_way = [&](const Surface& surface) {
+      return surface.meets(swept, standing) || surface.meets(open, coming);
+    };
+    return in_the_way(*surroundings_.part) ||
+           std::any_of(surroundings_.others.begin(), surroundings_.others.end(), in_the_way);
+  });
+}
+
+}  // namespace pinjaw::planner
