@@ -97,7 +97,7 @@ void enter_ready(State& state, Event event) {
   state.permit_dn = 0;
   state.force_set_dn = 0;
   state.receiving = {};
-  state.opening_wanted = event != Event::CmdArmReady;
+  state.opening_wanted = !state.config.passive && event != Event::CmdArmReady;
   if (event == Event::Opened) record_custody(state, Custody::Released);
   if (event == Event::CmdAbort) state.faults.clear_all();
 }

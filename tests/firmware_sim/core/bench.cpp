@@ -1,0 +1,239 @@
+#include "tests/firmware_sim/core/bench.hpp"
+
+#include <algorithm>
+
+namespace pinjaw::core::test {
+namespace {
+
+constexpr std::uint16_t kKit = 0x1234;
+constexpr std::uint32_t kPart = 0xCAFE0001;
+constexpr std::int32_t kContact_10um = 3000;
+
+wire::Layout body_for(std::uint8_t node, std::uint16_t f_required_dn) {
+  wire::Layout layout{
+      .kit_id = kKit, .part_id = kPart, .grid_pitch_nm = 11'112'500, .pin_diameter_nm = 4'762'500};
+  layout.stable_ms = 150;
+  layout.slip_tolerance_um = 200;
+  layout.pin_count = 3;
+  for (std::uint8_t i = 0; i < 3; ++i) {
+    layout.pins[i] = {
+        .jaw = wire::Jaw::Left, .column = 0, .row = static_cast<std::int8_t>(i), .length_10um = 1650};
+  }
+  if (node == kPallet) {
+    layout.node_class = wire::NodeClass::Passive;
+    layout.passive = true;
+    return layout;
+  }
+  layout.pin_count = 4;
+  layout.pins[3] = {.jaw = wire::Jaw::Right, .column = 0, .row = 1, .length_10um = 1650};
+  layout.separation_open_10um = 5000;
+  layout.separation_contact_10um = kContact_10um;
+  layout.separation_tolerance_10um = 50;
+  layout.f_light_dn = 120;
+  layout.f_required_dn = f_required_dn;
+  layout.f_limit_dn = 1400;
+  return layout;
+}
+
+}  // namespace
+
+wire::Layout layout_for(std::uint8_t node, std::uint16_t f_required_dn) {
+  wire::Layout layout = body_for(node, f_required_dn);
+  const wire::PairSide own{node, wire::layout_crc_of(layout)};
+  for (const std::uint8_t other : {kArm, kPedestal, kPallet}) {
+    if (other == node) continue;
+    const wire::Layout theirs = body_for(other, 400);
+    const wire::PairSide side{other, wire::layout_crc_of(theirs)};
+    layout.peers[layout.peer_count++] = {.node = other,
+                                         .layout_crc = side.layout_crc,
+                                         .f_required_dn = theirs.f_required_dn,
+                                         .pair_crc = wire::pair_crc_of(kPart, own, side)};
+  }
+  return layout;
+}
+
+Station::Station(std::uint8_t node) {
+  config.node = node;
+  config.kit_id = kKit;
+  config.passive = node == kPallet;
+  if (config.passive) config.seat_switches = 7;
+  jaw.passive = config.passive;
+  core = power_on(config, memory);
+}
+
+void Station::power_off() {
+  powered = false;
+  outputs = {};
+}
+
+void Station::power_on_again() {
+  powered = true;
+  stored = {};
+  core = power_on(config, memory);
+}
+
+void Station::step(const std::vector<wire::Frame>& frames) {
+  if (!powered) return jaw.step(Valves{});
+  outputs = core::step(core, {.received = frames, .sensors = jaw.read(), .nvm = stored});
+  if (outputs.nvm) {
+    if (memory_fails) {
+      stored.failed = true;
+    } else {
+      if (outputs.nvm->record) memory.record = outputs.nvm->record;
+      if (outputs.nvm->layout) memory.layout = *outputs.nvm->layout;
+      stored = {.done = outputs.nvm->sequence, .failed = false};
+    }
+  }
+  jaw.step(outputs.valves);
+}
+
+Bench::Bench() {
+  for (const std::uint8_t node : {kArm, kPedestal, kPallet}) stations_.emplace_back(node);
+}
+
+bool Bench::lost() {
+  random_ = random_ * 1664525U + 1013904223U;
+  return static_cast<int>((random_ >> 16) % 100U) < loss_percent;
+}
+
+void Bench::beat(std::vector<wire::Frame>& frames) {
+  if (!host_alive || now_ms % wire::kHostHeartbeat_ms != 0) return;
+  beat_counter_ = wire::next_counter(beat_counter_);
+  const wire::HostHeartbeat heartbeat{.state = wire::HostState::Run, .permit = host_permit, .epoch = epoch};
+  frames.push_back(wire::pack(heartbeat, {.node = 0, .counter = beat_counter_}));
+}
+
+std::vector<wire::Frame> Bench::delivered(const std::vector<wire::Frame>& frames, std::uint8_t to) {
+  std::vector<wire::Frame> received;
+  for (const wire::Frame& frame : frames) {
+    const bool own =
+        frame.id < 0x240 + 16 && frame.id != 0x0F0 && (frame.id & 0xFU) == to && (frame.id & 0x7F0U) != 0x100;
+    if (own || lost()) continue;
+    received.push_back(frame);
+    if (duplicates && lost()) received.push_back(frame);
+  }
+  return received;
+}
+
+void Bench::run(int ms) {
+  for (int i = 0; i < ms; ++i) {
+    std::vector<wire::Frame> frames = std::exchange(injected_, {});
+    beat(frames);
+    frames.insert(frames.end(), heard.begin(), heard.end());
+    heard.clear();
+    for (Station& station : stations_) {
+      station.step(delivered(frames, station.config.node));
+      const auto view = station.outputs.send.view();
+      heard.insert(heard.end(), view.begin(), view.end());
+    }
+    ++now_ms;
+    if (after_step) after_step();
+  }
+}
+
+bool Bench::run_until(int most_ms, const std::function<bool()>& condition) {
+  for (int i = 0; i < most_ms; ++i) {
+    if (condition()) return true;
+    run(1);
+  }
+  return condition();
+}
+
+bool Bench::reaches(std::uint8_t node, StateId state, int most_ms) {
+  return run_until(most_ms, [&] { return at(node).id() == state; });
+}
+
+std::optional<wire::Acknowledge> Bench::command(std::uint8_t node, wire::Command command) {
+  if (command.op != wire::Op::Hold && command.op != wire::Op::Arm) {
+    const auto sequence = sequence_[node].take();
+    if (!sequence) return std::nullopt;
+    command.sequence = *sequence;
+    command.session = session_[node];
+  }
+  for (int attempt = 0; attempt < 20; ++attempt) {
+    inject(wire::pack(command, {.node = node}));
+    for (int ms = 0; ms < wire::kAcknowledge_ms; ++ms) {
+      run(1);
+      for (const wire::Frame& frame : heard) {
+        const auto answer = wire::parse<wire::Acknowledge>(frame);
+        const bool mine = answer && answer->label.node == node && answer->message.op == command.op &&
+                          answer->message.sequence == command.sequence;
+        if (mine && !lost()) return answer->message;
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<wire::Acknowledge> Bench::arm_session(std::uint8_t node) {
+  const auto answer = command(node, wire::arm_command(at(node).core.layouts.crc, epoch));
+  if (answer && answer->result == wire::CommandResult::Ok) {
+    session_[node] = answer->session;
+    sequence_[node].begin(answer->next_sequence);
+  }
+  return answer;
+}
+
+wire::CommandResult Bench::result_of(std::uint8_t node, const wire::Command& wanted) {
+  const auto answer = command(node, wanted);
+  return answer ? answer->result : wire::CommandResult::Busy;
+}
+
+void Bench::load(std::uint8_t node, const wire::Layout& layout) {
+  const wire::EncodedLayout encoded = wire::encode(layout);
+  std::copy(encoded.bytes.begin(), encoded.bytes.end(), at(node).memory.layout.bytes.begin());
+  at(node).memory.layout.size = static_cast<std::uint16_t>(encoded.size);
+  at(node).power_on_again();
+}
+
+void Bench::load_all() {
+  for (const std::uint8_t node : {kArm, kPedestal, kPallet}) load(node, layout_for(node));
+  run(300);
+}
+
+void Bench::bring_part(std::uint8_t node, bool there) {
+  if (at(node).config.passive) {
+    at(node).jaw.part_on_seats = there;
+  } else {
+    at(node).jaw.part_10um = there ? std::optional(kContact_10um) : std::nullopt;
+  }
+}
+
+void Bench::load_pallet() {
+  bring_part(kPallet, true);
+  pallet().jaw.local_enable = true;
+  arm_session(kPallet);
+  command(kPallet, wire::plain_command(wire::Op::CloseLight));
+  reaches(kPallet, StateId::Seated);
+  command(kPallet, wire::squeeze_command({0, 0}));
+  reaches(kPallet, StateId::Hold);
+  pallet().jaw.local_enable = false;
+}
+
+void Bench::load_gripper(std::uint8_t node) {
+  bring_part(node, true);
+  at(node).jaw.local_enable = true;
+  arm_session(node);
+  command(node, wire::plain_command(wire::Op::CloseLight));
+  reaches(node, StateId::Seated);
+  command(node, wire::squeeze_command({520, 1400}));
+  reaches(node, StateId::Hold);
+  at(node).jaw.local_enable = false;
+}
+
+bool Bench::hand_over(std::uint8_t giver, std::uint8_t receiver) {
+  for (const std::uint8_t node : {giver, receiver}) {
+    if (!at(node).core.gate.armed() || at(node).id() == StateId::Loaded) arm_session(node);
+  }
+  bring_part(receiver, true);
+  if (result_of(giver, wire::offer_command(receiver)) != wire::CommandResult::Ok) return false;
+  run(100);
+  if (result_of(receiver, wire::accept_command(giver)) != wire::CommandResult::Ok) return false;
+  if (!reaches(receiver, StateId::Seated)) return false;
+  const wire::SqueezeForces forces =
+      at(receiver).config.passive ? wire::SqueezeForces{0, 0} : wire::SqueezeForces{520, 1400};
+  if (result_of(receiver, wire::squeeze_command(forces)) != wire::CommandResult::Ok) return false;
+  return reaches(receiver, StateId::Hold) && reaches(giver, StateId::Ready);
+}
+
+}  // namespace pinjaw::core::test
