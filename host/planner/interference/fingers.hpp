@@ -36,13 +36,12 @@ struct FingerSet {
   double radius_mm = 0;
   double clearance_mm = 0;
   int pin_count = 0;
-  int plate_count = 0;
+  int plate_count = 0;                   ///< none for a pallet: the floor stands for its plate
   std::array<Finger, kMaxPins> pins;
   std::array<Plate, 2> plates;
   std::optional<double> floor_z_mm;      ///< the plane on which the part rests, for a pallet or fixture
   Interval pins_z_mm;                    ///< of all pins
   Interval plates_z_mm;                  ///< of all plates
-  std::array<geometry::Interval, 2> pins_plan_mm;  ///< x and y range of all pins, closed to open
 };
 
 /// What a design is, beside its pins: its gripper.

@@ -42,7 +42,7 @@ struct HandoffVerdict {
 
 /// Checks a handoff. Two fingers clash where their plan distance is under the sum of their radii plus the larger
 /// clearance of the two kits and their z ranges overlap: a broad phase on z ranges and plan distances, then libccd;
-/// what libccd cannot decide counts as a clash. Swapping the two swaps the roles in the verdict, no more.
+/// what libccd cannot decide counts as a clash. Two designs are compatible whichever of them gives.
 HandoffVerdict check_handoff(const FingerSet& giver, const FingerSet& receiver);
 
 /// The same answer as check_handoff(...).compatible(), without finding out which check failed first.
