@@ -32,8 +32,10 @@ std::string_view without_unit(std::string_view word) {
   return word.substr(0, word.rfind('_'));
 }
 
-/// True for `radius` or `radius_in` where `radius_mm` is known: the unit is missing or another.
+/// True for `radius` or `radius_in` where `radius_mm` is known, and for `degrees` where `deg` is: the unit is
+/// missing, another, or written out.
 bool differs_in_unit(std::string_view word, std::string_view known) {
+  if (known.size() >= 3 && word.starts_with(known)) return true;
   if (known.find('_') == std::string_view::npos) return false;
   return word == without_unit(known) || without_unit(word) == without_unit(known);
 }

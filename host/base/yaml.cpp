@@ -42,8 +42,8 @@ std::string found(const YamlNode& node) {
 
 /// A decimal number: all of the text, finite, no hexadecimal, no infinity or NaN.
 std::optional<double> parse_number(std::string_view text) {
+  if (text.starts_with("+-")) return {};
   if (text.starts_with('+')) text.remove_prefix(1);
-  if (text.starts_with('+')) return {};
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return {};
@@ -51,6 +51,7 @@ std::optional<double> parse_number(std::string_view text) {
 }
 
 std::optional<std::int64_t> parse_whole(std::string_view text) {
+  if (text.starts_with("+-")) return {};
   if (text.starts_with('+')) text.remove_prefix(1);
   std::int64_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
