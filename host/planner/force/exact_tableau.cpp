@@ -17,8 +17,11 @@ using kernel::kColumns;
 using kernel::kRows;
 constexpr int kWidth = kColumns + kRows;  // real columns, then one artificial a row
 constexpr double kFeasible = 1e-10;       // of |b|, the kernel's primal tolerance
-constexpr double kPivot = 1e-12;          // of columns of length about 1: smaller entries are the data's rounding
-constexpr double kReducedCost = 1e-20;    // far under what a double result shows, far over rounding
+// Columns have length about 1 and rounding of 1e-16. A column that gains less than 1e-13 a newton is not worth entering; one
+// that gains more has an entry above a sixth of that, so the pivot tolerance lies below it.
+constexpr double kReducedCost = 1e-13;
+constexpr double kPivot = 1e-15;
+constexpr double kRank = 1e-12;  // a row smaller than this is dependent
 constexpr int kMaxPivots = 20000;         // Bland's rule ends far earlier; reaching this is a bug
 
 Real magnitude(Real value) { return value < 0 ? -value : value; }
@@ -40,11 +43,12 @@ class Tableau {
   TableauOutcome solve(const kernel::Program& program) {
     std::array<Real, kWidth> cost{};
     std::fill(cost.begin() + kColumns, cost.end(), Real{1});
-    run(cost, kWidth);
+    run(cost, columns_);
     Real artificial = 0;
     for (int k = 0; k < kRows; ++k) artificial += basis_[at(k)] >= kColumns ? right_[at(k)] : Real{0};
     if (artificial > kFeasible * size_) return Unresistable{};
     drive_out_artificials();
+    artificials_block_ = false;
     cost.fill(0);
     for (int j = 0; j < columns_; ++j) cost[at(j)] = program.cost[j];
     if (!run(cost, columns_)) return Unbounded{};
@@ -83,13 +87,13 @@ class Tableau {
     return -1;
   }
 
-  /// Bland: least ratio, then least basis index. An artificial still in the basis lies at 0 in a row that is
-  /// zero but for rounding, so it never blocks.
+  /// Bland: least ratio, then least basis index. An artificial that the second phase still has lies at 0 in a dependent
+  /// row, and does not block.
   [[nodiscard]] int blocking_row(int entering) const {
     int row = -1;
     for (int k = 0; k < kRows; ++k) {
       const Real entry = rows_[at(k)][at(entering)];
-      if (entry <= kPivot) continue;
+      if (entry <= kPivot || (!artificials_block_ && basis_[at(k)] >= kColumns)) continue;
       if (row < 0) {
         row = k;
         continue;
@@ -122,11 +126,12 @@ class Tableau {
       for (int j = 1; j < columns_; ++j) {
         if (magnitude(rows_[at(k)][at(j)]) > magnitude(rows_[at(k)][at(largest)])) largest = j;
       }
-      if (magnitude(rows_[at(k)][at(largest)]) > kPivot) pivot(k, largest);
+      if (magnitude(rows_[at(k)][at(largest)]) > kRank) pivot(k, largest);
     }
   }
 
   int columns_;
+  bool artificials_block_ = true;
   double size_ = 0;
   std::array<std::array<Real, kWidth>, kRows> rows_{};
   std::array<Real, kRows> right_{};

@@ -81,8 +81,8 @@ struct Worker {
   std::vector<double> forces_n;
 
   ForceVerdict verdict(const Grasp& grasp, std::span<const model::Wrench> wrenches, const ForceOptions& options) {
-    if (const auto contact = jamming_contact(grasp)) return Jams{contact->pin};
     if (const auto jaw = wedging_jaw(grasp)) return Wedges{*jaw};
+    if (const auto contact = jamming_contact(grasp)) return Jams{contact->pin};
     solver.take(grasp);
     return options.friction == model::FrictionModel::Cone ? evaluate_cone(solver, wrenches, options, forces_n)
                                                           : evaluate_pyramid(solver, wrenches, options, forces_n);

@@ -22,14 +22,14 @@ struct Holds {
   std::size_t critical = 0;
 };
 
-/// A contact that sliding cannot close (see jamming_contact()).
-struct Jams {
-  int pin = 0;
-};
-
 /// One jaw's contacts alone are in planar frictional force closure.
 struct Wedges {
   model::JawSide jaw = model::JawSide::Left;
+};
+
+/// A contact that sliding cannot close (see jamming_contact()).
+struct Jams {
+  int pin = 0;
 };
 
 /// No squeeze holds wrench `critical`, the first such in the list.
@@ -43,8 +43,9 @@ struct TooStrong {
   std::size_t critical = 0;
 };
 
-/// One outcome a design: held, or why it is discarded, tested in this order: jams, wedges, not resistable, too strong.
-using ForceVerdict = std::variant<Holds, Jams, Wedges, NotResistable, TooStrong>;
+/// One outcome a design: held, or why it is discarded, tested in this order: wedges, jams, not resistable, too strong.
+/// (A grasp that does not jam cannot wedge, all forces of a jaw then having a part along its motion; so wedging comes first.)
+using ForceVerdict = std::variant<Holds, Wedges, Jams, NotResistable, TooStrong>;
 
 struct ForceOptions {
   model::FrictionModel friction = model::FrictionModel::Pyramid;
