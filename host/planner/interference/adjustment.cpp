@@ -13,12 +13,15 @@ using geometry::Vector2d;
 using model::Side;
 
 constexpr double kTurn = 2 * std::numbers::pi;
-constexpr double kAngleTolerance = 1e-9;       ///< chosen: rounding of the closed forms that angles come from
-constexpr double kOffsetToleranceMm = 1e-6;    ///< the same for lengths
+constexpr double kAngleTolerance = 1e-9;     ///< chosen: rounding of the closed forms that angles come from
+constexpr double kOffsetToleranceMm = 1e-6;  ///< the same for lengths
 
-Vector2d mirrored(const Vector2d& v) { return {-v.x(), v.y()}; }
+Vector2d mirrored(const Vector2d& v) {
+  return {-v.x(), v.y()};
+}
 
-/// `hold` and `adjustment` as a gripper from below would say them: turning by pi about y mirrors x and the sense of angles.
+/// `hold` and `adjustment` as a gripper from below would say them: turning by pi about y mirrors x and the
+/// sense of angles.
 Pose2 from_below(const Hold& hold) {
   if (hold.side == Side::Below) return hold.part_pose;
   return {-hold.part_pose.theta_rad, mirrored(hold.part_pose.t_mm)};
@@ -35,9 +38,13 @@ double principal(double angle_rad) {
   return wrapped > std::numbers::pi ? wrapped - kTurn : wrapped;
 }
 
-Vector2d turned(double angle_rad, const Vector2d& v) { return Pose2{angle_rad, Vector2d::Zero()}.turned(v); }
+Vector2d turned(double angle_rad, const Vector2d& v) {
+  return Pose2{angle_rad, Vector2d::Zero()}.turned(v);
+}
 
-Interval negated(const Interval& i) { return {-i.hi, -i.lo}; }
+Interval negated(const Interval& i) {
+  return {-i.hi, -i.lo};
+}
 
 /// Bounds as a gripper from below would say them.
 model::Adjust from_below(Side side, const model::Adjust& bounds) {
@@ -45,7 +52,8 @@ model::Adjust from_below(Side side, const model::Adjust& bounds) {
   return {negated(bounds.x_mm), bounds.y_mm, negated(bounds.theta_rad)};
 }
 
-/// The value nearest to 0 in both `a` and `b` moved by `shift`; nothing where they are apart by more than `tolerance`.
+/// The value nearest to 0 in both `a` and `b` moved by `shift`; nothing where they are apart by more than
+/// `tolerance`.
 std::optional<double> least_common(const Interval& a, const Interval& b, double shift, double tolerance) {
   const double lo = std::max(a.lo, b.lo + shift);
   const double hi = std::min(a.hi, b.hi + shift);
@@ -95,7 +103,8 @@ std::optional<PairAdjustment> pair_adjustment(const Hold& giver, const model::Ad
   const Pose2 receive = from_below(receiver);
   const model::Adjust gives = from_below(giver.side, giver_bounds);
   const model::Adjust receives = from_below(receiver.side, receiver_bounds);
-  const auto theta = least_common_angle(gives.theta_rad, receives.theta_rad, receive.theta_rad - give.theta_rad);
+  const auto theta =
+      least_common_angle(gives.theta_rad, receives.theta_rad, receive.theta_rad - give.theta_rad);
   if (!theta) return std::nullopt;
   const double receiver_theta = *theta + give.theta_rad - receive.theta_rad;
   const Vector2d shift_mm = turned(receiver_theta, receive.t_mm) - turned(*theta, give.t_mm);

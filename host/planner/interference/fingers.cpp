@@ -17,7 +17,9 @@ class ToPart {
 
   [[nodiscard]] Vector2d point(const Vector2d& p_GQ_mm) const { return mirrored(X_PG_ * p_GQ_mm); }
   [[nodiscard]] Vector2d vector(const Vector2d& v_G) const { return mirrored(X_PG_.turned(v_G)); }
-  [[nodiscard]] Interval z(const Interval& z_mm) const { return above_ ? Interval{-z_mm.hi, -z_mm.lo} : z_mm; }
+  [[nodiscard]] Interval z(const Interval& z_mm) const {
+    return above_ ? Interval{-z_mm.hi, -z_mm.lo} : z_mm;
+  }
 
  private:
   [[nodiscard]] Vector2d mirrored(const Vector2d& v) const { return above_ ? Vector2d(-v.x(), v.y()) : v; }
@@ -40,7 +42,9 @@ Plate plate_of(const model::Design& design, const model::Kit& kit, const ToPart&
           .z_mm = to_part.z({plate_top_mm - kit.jaws.plate_thickness_mm, plate_top_mm})};
 }
 
-Interval hull(const Interval& a, const Interval& b) { return {std::min(a.lo, b.lo), std::max(a.hi, b.hi)}; }
+Interval hull(const Interval& a, const Interval& b) {
+  return {std::min(a.lo, b.lo), std::max(a.hi, b.hi)};
+}
 
 }  // namespace
 

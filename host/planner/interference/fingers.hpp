@@ -13,7 +13,8 @@ namespace pinjaw::planner {
 using geometry::Interval;
 using geometry::Vector2d;
 
-/// One pin as the other gripper meets it. Frame: the part frame, not turned, in which both grippers hold the part.
+/// One pin as the other gripper meets it. Frame: the part frame, not turned, in which both grippers hold the
+/// part.
 struct Finger {
   Vector2d closed_mm = Vector2d::Zero();
   Vector2d open_mm = Vector2d::Zero();
@@ -32,23 +33,23 @@ struct FingerSet {
   static constexpr int kMaxPins = 4;
 
   model::Side side = model::Side::Below;
-  bool opens = true;                     ///< false: a pallet, which never opens
+  bool opens = true;  ///< false: a pallet, which never opens
   double radius_mm = 0;
   double clearance_mm = 0;
   int pin_count = 0;
-  int plate_count = 0;                   ///< none for a pallet: the floor stands for its plate
+  int plate_count = 0;  ///< none for a pallet: the floor stands for its plate
   std::array<Finger, kMaxPins> pins;
   std::array<Plate, 2> plates;
-  std::optional<double> floor_z_mm;      ///< the plane on which the part rests, for a pallet or fixture
-  Interval pins_z_mm;                    ///< of all pins
-  Interval plates_z_mm;                  ///< of all plates
+  std::optional<double> floor_z_mm;  ///< the plane on which the part rests, for a pallet or fixture
+  Interval pins_z_mm;                ///< of all pins
+  Interval plates_z_mm;              ///< of all plates
 };
 
 /// What a design is, beside its pins: its gripper.
 struct Holder {
-  const model::Kit* kit = nullptr;       ///< not null
+  const model::Kit* kit = nullptr;  ///< not null
   model::Side side = model::Side::Below;
-  bool grips = true;                     ///< false: a pallet: three pins on one jaw, no second plate, the part rests
+  bool grips = true;  ///< false: a pallet: three pins on one jaw, no second plate, the part rests
 };
 
 /// The fingers of `design`. `part_low_mm`: lowest z of the part turned by the holder's side.

@@ -29,7 +29,9 @@ Interval reach_z(const FingerSet& set, const Interval& z_mm, Motion motion) {
   return set.side == model::Side::Below ? Interval{-kInfinity, z_mm.hi} : Interval{z_mm.lo, kInfinity};
 }
 
-bool overlap_in_z(const Interval& a, const Interval& b) { return a.lo < b.hi && b.lo < a.hi; }
+bool overlap_in_z(const Interval& a, const Interval& b) {
+  return a.lo < b.hi && b.lo < a.hi;
+}
 
 struct Track {
   Vector2d from_mm;
@@ -38,9 +40,12 @@ struct Track {
 
 Track track_of(const Finger& pin, Motion motion) {
   switch (motion) {
-    case Motion::Closed: return {pin.closed_mm, pin.closed_mm};
-    case Motion::Moves: return {pin.closed_mm, pin.open_mm};
-    case Motion::Away: return {pin.open_mm, pin.open_mm};
+    case Motion::Closed:
+      return {pin.closed_mm, pin.closed_mm};
+    case Motion::Moves:
+      return {pin.closed_mm, pin.open_mm};
+    case Motion::Away:
+      return {pin.open_mm, pin.open_mm};
   }
   return {pin.closed_mm, pin.open_mm};
 }
@@ -64,7 +69,8 @@ bool comes_first(const Solid& a, const Solid& b) {
       return std::array{pin->z_mm.lo, pin->plan.from_mm.x(), pin->plan.from_mm.y(), pin->plan.radius_mm};
     }
     const auto& block = std::get<Block>(solid);
-    return std::array{block.z_mm.lo, block.plan.center_mm.x(), block.plan.center_mm.y(), block.plan.half_mm.x()};
+    return std::array{block.z_mm.lo, block.plan.center_mm.x(), block.plan.center_mm.y(),
+                      block.plan.half_mm.x()};
   };
   return place(a) < place(b);
 }
@@ -107,10 +113,12 @@ Solid solid_of(const Actor& actor, const Plate& plate, double grown_mm) {
   return Block{plan, reach_z(actor.set, plate.z_mm, actor.motion)};
 }
 
-bool pins_clash(const Actor& a, const Finger& a_pin, const Actor& b, const Finger& b_pin, double clearance_mm) {
+bool pins_clash(const Actor& a, const Finger& a_pin, const Actor& b, const Finger& b_pin,
+                double clearance_mm) {
   if (!overlap_in_z(reach_z(a.set, a_pin.z_mm, a.motion), reach_z(b.set, b_pin.z_mm, b.motion))) return false;
   const double reach_mm = a.set.radius_mm + b.set.radius_mm + clearance_mm;
-  if (distance2_mm2(track_of(a_pin, a.motion), track_of(b_pin, b.motion)) >= reach_mm * reach_mm) return false;
+  if (distance2_mm2(track_of(a_pin, a.motion), track_of(b_pin, b.motion)) >= reach_mm * reach_mm)
+    return false;
   return overlapping(solid_of(a, a_pin, clearance_mm / 2), solid_of(b, b_pin, clearance_mm / 2));
 }
 
@@ -172,7 +180,8 @@ std::optional<int> floor_clash(const FingerSet& resting, const FingerSet& reachi
   if (!resting.floor_z_mm || reaching.side == resting.side) return std::nullopt;
   for (int i = 0; i < reaching.pin_count; ++i) {
     const Interval& z_mm = reaching.pins[static_cast<std::size_t>(i)].z_mm;
-    const bool reaches = resting.side == model::Side::Below ? z_mm.lo <= *resting.floor_z_mm : z_mm.hi >= *resting.floor_z_mm;
+    const bool reaches =
+        resting.side == model::Side::Below ? z_mm.lo <= *resting.floor_z_mm : z_mm.hi >= *resting.floor_z_mm;
     if (reaches) return i;
   }
   return std::nullopt;
@@ -190,19 +199,28 @@ constexpr std::array kChecks{Check{HandoffCheck::BothClosed, Motion::Closed, Mot
                              Check{HandoffCheck::ReceiverComes, Motion::Closed, Motion::Away}};
 
 /// A gripper's way from closed to open holds where it is closed, so three of the checks say all of five.
-constexpr bool implied(HandoffCheck check) { return check == HandoffCheck::BothClosed; }
+constexpr bool implied(HandoffCheck check) {
+  return check == HandoffCheck::BothClosed;
+}
 
 }  // namespace
 
 std::string_view to_string(HandoffCheck check) {
   switch (check) {
-    case HandoffCheck::None: return "none";
-    case HandoffCheck::Floor: return "floor";
-    case HandoffCheck::BothClosed: return "both_closed";
-    case HandoffCheck::GiverMoves: return "giver_moves";
-    case HandoffCheck::ReceiverMoves: return "receiver_moves";
-    case HandoffCheck::GiverLeaves: return "giver_leaves";
-    case HandoffCheck::ReceiverComes: return "receiver_comes";
+    case HandoffCheck::None:
+      return "none";
+    case HandoffCheck::Floor:
+      return "floor";
+    case HandoffCheck::BothClosed:
+      return "both_closed";
+    case HandoffCheck::GiverMoves:
+      return "giver_moves";
+    case HandoffCheck::ReceiverMoves:
+      return "receiver_moves";
+    case HandoffCheck::GiverLeaves:
+      return "giver_leaves";
+    case HandoffCheck::ReceiverComes:
+      return "receiver_comes";
   }
   return "?";
 }

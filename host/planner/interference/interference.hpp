@@ -9,17 +9,17 @@ namespace pinjaw::planner {
 
 /// The checks of a handoff (BB 3.6; DESIGN 3 phase 6, 3.1 nos 9 and 12), in the order they are made.
 enum class HandoffCheck {
-  None,            ///< compatible: no check failed
-  Floor,           ///< a pin from above reaches the plane that the part rests on
-  BothClosed,      ///< both grippers hold the part
-  GiverMoves,      ///< the giver opens while the receiver holds; or closes, when it takes the part back
-  ReceiverMoves,   ///< the receiver closes, or opens, while the giver holds
-  GiverLeaves,     ///< the open giver goes away along z; or comes
-  ReceiverComes,   ///< the open receiver comes along z; or goes away
+  None,           ///< compatible: no check failed
+  Floor,          ///< a pin from above reaches the plane that the part rests on
+  BothClosed,     ///< both grippers hold the part
+  GiverMoves,     ///< the giver opens while the receiver holds; or closes, when it takes the part back
+  ReceiverMoves,  ///< the receiver closes, or opens, while the giver holds
+  GiverLeaves,    ///< the open giver goes away along z; or comes
+  ReceiverComes,  ///< the open receiver comes along z; or goes away
 };
-inline constexpr std::array kHandoffChecks{HandoffCheck::Floor,         HandoffCheck::BothClosed,
-                                           HandoffCheck::GiverMoves,    HandoffCheck::ReceiverMoves,
-                                           HandoffCheck::GiverLeaves,   HandoffCheck::ReceiverComes};
+inline constexpr std::array kHandoffChecks{HandoffCheck::Floor,       HandoffCheck::BothClosed,
+                                           HandoffCheck::GiverMoves,  HandoffCheck::ReceiverMoves,
+                                           HandoffCheck::GiverLeaves, HandoffCheck::ReceiverComes};
 /// The name in reports: `both_closed`.
 std::string_view to_string(HandoffCheck check);
 
@@ -35,14 +35,15 @@ struct FingerName {
 /// Whether two designs can hand the part over, and if not the first clash that was found.
 struct HandoffVerdict {
   HandoffCheck failed = HandoffCheck::None;
-  FingerName giver;     ///< meaningless where compatible
+  FingerName giver;  ///< meaningless where compatible
   FingerName receiver;
   [[nodiscard]] bool compatible() const { return failed == HandoffCheck::None; }
 };
 
-/// Checks a handoff. Two fingers clash where their plan distance is under the sum of their radii plus the larger
-/// clearance of the two kits and their z ranges overlap: a broad phase on z ranges and plan distances, then libccd;
-/// what libccd cannot decide counts as a clash. Two designs are compatible whichever of them gives.
+/// Checks a handoff. Two fingers clash where their plan distance is under the sum of their radii plus the
+/// larger clearance of the two kits and their z ranges overlap: a broad phase on z ranges and plan distances,
+/// then libccd; what libccd cannot decide counts as a clash. Two designs are compatible whichever of them
+/// gives.
 HandoffVerdict check_handoff(const FingerSet& giver, const FingerSet& receiver);
 
 /// The same answer as check_handoff(...).compatible(), without finding out which check failed first.
