@@ -1,0 +1,124 @@
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "protocol/bus/candump.hpp"
+#include "protocol/wire/dispatch.hpp"
+#include "tests/protocol/wire/sample_messages.hpp"
+
+/// Random frames of every message go into a candump log; canmatrix decodes it by our DBC; its numbers must be
+/// ours.
+namespace pinjaw::wire {
+namespace {
+
+using testing::Engine;
+
+/// A decoded frame: raw numbers and physical values by signal.
+struct Decoded {
+  std::string message;
+  std::map<std::string, std::uint64_t> raw{};
+  std::map<std::string, double> physical{};
+
+  void put(const FieldSpec& field, std::uint64_t number) {
+    raw[field.name] = number;
+    physical[field.name] = static_cast<double>(number) * field.factor.numerator / field.factor.denominator;
+  }
+};
+
+/// What our codec reads in a frame, by way of the typed message.
+struct Collect {
+  const Frame& frame;
+  Decoded decoded{};
+
+  template <class T>
+  void operator()(const FieldSpec& field, const T& member) {
+    decoded.put(field, detail::to_raw(field, member));
+  }
+  template <class Message>
+  void operator()(const Received<Message>& received) {
+    begin(Message::kType, received.label.node);
+    decoded.put(kCrcField, frame.data[0]);
+    if (spec_of(Message::kType).protection == Protection::Counter) {
+      decoded.put(kCounterField, received.label.counter);
+      decoded.put(kVersionField, kProtocolVersion);
+    }
+    Message::fields(received.message, *this);
+  }
+  void operator()(const Segment& segment) {
+    begin(segment.identifier.type, segment.identifier.node);
+    decoded.put(kTransferFields[0], segment.data[0] & 0xFU);
+    decoded.put(kTransferFields[1], segment.data[0] >> 4);
+    for (std::size_t i = 1; i < 8; ++i) decoded.put(kTransferFields[i + 1], segment.data.at(i));
+  }
+  void begin(MessageType type, std::uint8_t node) {
+    decoded.message = spec_of(type).name;
+    if (spec_of(type).per_node) decoded.message += '_' + std::to_string(node);
+  }
+};
+
+template <class... Messages>
+struct AllMessages {
+  static void append(std::vector<Frame>& frames, Engine& engine) {
+    (frames.push_back(
+         pack(testing::random_message<Messages>(engine), testing::random_label<Messages>(engine))),
+     ...);
+  }
+};
+using Catalogue = AllMessages<GlobalHold, FaultReport, Custody, NodeState, Force, HostHeartbeat, HostTime,
+                              Command, Acknowledge, Pneumatics, LayoutStatus, Identity>;
+
+std::vector<Frame> random_frames(int rounds) {
+  Engine engine(31);
+  std::vector<Frame> frames;
+  for (int i = 0; i < rounds; ++i) {
+    Catalogue::append(frames, engine);
+    Segment segment{{MessageType::TransferRequest, static_cast<std::uint8_t>(1 + engine() % 14)},
+                    to_payload(engine())};
+    segment.data[0] &= 0x3F;
+    frames.push_back(pack_segment(segment));
+    segment.identifier.type = MessageType::TransferResponse;
+    frames.push_back(pack_segment(segment));
+  }
+  return frames;
+}
+
+TEST(Canmatrix, reads_in_a_log_what_our_codec_reads) {
+  const std::vector<Frame> frames = random_frames(120);
+  const std::string folder = std::filesystem::temp_directory_path().string() + "/canmatrix_test." +
+                             std::to_string(::testing::UnitTest::GetInstance()->random_seed()) + '.' +
+                             std::to_string(std::hash<std::string>{}(PINJAW_BIN_DIR));
+  std::filesystem::create_directories(folder);
+  {
+    std::ofstream log(folder + "/frames.log");
+    std::int64_t time_us = 0;
+    for (const Frame& frame : frames) log << bus::to_log_line({time_us += 270, "can0", frame}) << '\n';
+  }
+  const std::string command =
+      "/usr/bin/python3 " PINJAW_SOURCE_DIR
+      "/tests/protocol/describe/decode_with_canmatrix.py " PINJAW_SOURCE_DIR "/protocol/pinjaw.dbc " +
+      folder + "/frames.log > " + folder + "/decoded.json 2> " + folder + "/errors.txt";
+  ASSERT_EQ(std::system(command.c_str()), 0) << "needs Debian's python3-canmatrix: " << command;
+
+  std::ifstream decoded(folder + "/decoded.json");
+  std::string line;
+  for (const Frame& frame : frames) {
+    ASSERT_TRUE(std::getline(decoded, line));
+    const auto theirs = nlohmann::json::parse(line);
+    Collect ours{frame};
+    ASSERT_FALSE(dispatch(frame, ours).has_value());
+    std::string name = ours.decoded.message;
+    EXPECT_EQ(theirs.at("message"), name);
+    EXPECT_EQ((theirs.at("raw").get<std::map<std::string, std::uint64_t>>()), ours.decoded.raw) << name;
+    EXPECT_EQ((theirs.at("physical").get<std::map<std::string, double>>()), ours.decoded.physical) << name;
+  }
+  std::filesystem::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace pinjaw::wire
