@@ -73,9 +73,9 @@ class Node {
   plant::Parameters parameters_;
   bus::Bus* bus_;
   bool powered_ = true;
+  Nvm memory_;  // before the firmware, which reads it
   core::State firmware_;
   core::Valves valves_;
-  Nvm memory_;
   plant::State plant_;
   plant::Faults faults_;
   std::vector<wire::Frame> received_;

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "firmware_sim/app/options.hpp"
+#include "firmware_sim/node/figures.hpp"
+#include "firmware_sim/world/world.hpp"
+#include "protocol/bench/unix_socket.hpp"
+#include "protocol/bus/bus.hpp"
+
+namespace pinjaw::jaw_app {
+
+/// Filters for what a controller listens to, so that its receive buffer is not filled by the rest.
+std::vector<bus::Filter> filters_of(int node);
+
+/// The cell in real time: one world stepped each millisecond of CLOCK_MONOTONIC, its socket served in
+/// between.
+class Program {
+ public:
+  /// `buses` are the nodes' ends, in the order of `members`; `server` may be null.
+  Program(const std::vector<node::Figures>& members, std::vector<std::unique_ptr<bus::Bus>> buses,
+          std::unique_ptr<bench::SocketServer> server, const Options& options);
+
+  /// Runs until `stop`. Tells on stderr when the bus fails and when it comes back.
+  void run(const std::atomic<bool>& stop);
+
+ private:
+  void step();
+  void start_faults();
+
+  std::vector<std::unique_ptr<bus::Bus>> buses_;
+  std::unique_ptr<bench::SocketServer> server_;
+  world::World world_;
+  std::vector<TimedFault> faults_;
+  bool bus_failed_ = false;
+};
+
+}  // namespace pinjaw::jaw_app

@@ -1,0 +1,85 @@
+// The program itself: what it prints where, and its exit codes.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <fstream>
+#include <string>
+
+namespace {
+
+using ::testing::HasSubstr;
+
+struct Ran {
+  int code = -1;
+  std::string text;  ///< stdout and stderr
+};
+
+Ran run(const std::string& arguments) {
+  const std::string command = std::string(PINJAW_BIN_DIR) + "/pinjaw-jaw " + arguments + " 2>&1";
+  Ran ran;
+  FILE* pipe = popen(command.c_str(), "r");
+  if (pipe == nullptr) return ran;
+  char buffer[512];
+  while (std::fgets(buffer, sizeof(buffer), pipe) != nullptr) ran.text += buffer;
+  const int status = pclose(pipe);
+  ran.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return ran;
+}
+
+/// A good kit and a controller of node 1 in a folder of their own.
+std::string controller_file() {
+  const std::string folder = testing::TempDir() + "pinjaw-jaw-" + std::to_string(getpid());
+  std::ofstream(folder + "-kit.yaml")
+      << "kit: test\n"
+         "grid: {spacing_mm: 11.1125, columns: 2, rows: 9, edge_offset_mm: 5.55625}\n"
+         "pins: {radius_mm: 2.38125, lengths_mm: any, min_engagement_mm: 1.0, protrusion_mm: 1.0}\n"
+         "jaws: {separation_mm: [0, 60], plate_gap_mm: 2.0}\n"
+         "actuator: {max_squeeze_n: 140}\n";
+  std::ofstream(folder + ".yaml") << "controller: arm\nnode: 1\nkit: " << folder
+                                  << "-kit.yaml\npassive: false\nhardware: {max_squeeze_n: 140}\nplant: {}\n";
+  return folder + ".yaml";
+}
+
+TEST(JawProgram, help_shows_examples) {
+  const Ran ran = run("--help");
+  EXPECT_EQ(ran.code, 0);
+  EXPECT_THAT(ran.text, HasSubstr("Examples:"));
+  EXPECT_THAT(ran.text, HasSubstr("--fault"));
+}
+
+TEST(JawProgram, version_names_the_program) {
+  const Ran ran = run("--version");
+  EXPECT_EQ(ran.code, 0);
+  EXPECT_THAT(ran.text, HasSubstr("pinjaw-jaw 0."));
+}
+
+TEST(JawProgram, wrong_usage_exits_2) {
+  EXPECT_EQ(run("").code, 2);
+  const Ran ran = run("a.yaml --bus sim:");
+  EXPECT_EQ(ran.code, 2);
+  EXPECT_THAT(ran.text, HasSubstr("can:IFACE"));
+}
+
+TEST(JawProgram, a_missing_file_exits_3_and_is_named) {
+  const Ran ran = run("/nowhere/arm.yaml --bus can:vcan0");
+  EXPECT_EQ(ran.code, 3);
+  EXPECT_THAT(ran.text, HasSubstr("/nowhere/arm.yaml"));
+  EXPECT_THAT(ran.text, HasSubstr("nothing was simulated"));
+}
+
+TEST(JawProgram, a_fault_for_a_node_that_is_not_there_exits_2) {
+  const Ran ran = run(controller_file() + " --bus can:vcan0 --fault 5:spool_stuck");
+  EXPECT_EQ(ran.code, 2);
+  EXPECT_THAT(ran.text, HasSubstr("no controller file is of node 5"));
+}
+
+TEST(JawProgram, a_bus_that_is_not_there_exits_5_with_one_sentence) {
+  const Ran ran = run(controller_file() + " --bus can:nosuchcan9");
+  EXPECT_EQ(ran.code, 5);
+  EXPECT_THAT(ran.text, HasSubstr("pinjaw-jaw: "));
+}
+
+}  // namespace
