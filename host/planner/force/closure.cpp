@@ -8,7 +8,9 @@ namespace {
 
 constexpr double kMargin = 1e-9;  // relative; a boundary case is not closure, so it is not discarded
 
-double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+double cross(const Vector2d& a, const Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
 
 /// Nguyen: each contact sees the other inside its friction cone, squeezing inwards or spreading outwards.
 bool two_contacts_close(const PlanarContact& a, const PlanarContact& b, double mu) {
@@ -48,7 +50,8 @@ bool rays_span(const std::vector<Vector3d>& rays) {
     for (std::size_t j = i + 1; j < rays.size(); ++j) {
       const Vector3d& a = rays[i];
       const Vector3d& b = rays[j];
-      const Vector3d normal(a.y() * b.z() - a.z() * b.y(), a.z() * b.x() - a.x() * b.z(), a.x() * b.y() - a.y() * b.x());
+      const Vector3d normal(a.y() * b.z() - a.z() * b.y(), a.z() * b.x() - a.x() * b.z(),
+                            a.x() * b.y() - a.y() * b.x());
       if (normal.norm() < kMargin) continue;
       some_plane = true;
       bool above = false;

@@ -25,7 +25,8 @@ ConeProgram::ConeProgram(const Grasp& grasp, const GraspFrame& frame) : mu_(gras
     contact.tangent = {-of.n_P.y(), of.n_P.x(), 0};
     const double sigma = of.jaw == model::JawSide::Left ? 1 : -1;
     contact.closing = sigma * Vector3d(grasp.x_P.x(), grasp.x_P.y(), 0);
-    contact.least_share = contact.closing.dot(contact.normal) - mu_ * std::abs(contact.closing.dot(contact.tangent));
+    contact.least_share =
+        contact.closing.dot(contact.normal) - mu_ * std::abs(contact.closing.dot(contact.tangent));
     contacts_.push_back(contact);
   }
 }
@@ -39,7 +40,9 @@ ConeProgram::Vector6 ConeProgram::column_of(const Ray& ray) const {
 
 double ConeProgram::cost_of(const Ray& ray, Phase phase) const {
   if (ray.contact < 0) return phase == Phase::Feasibility ? 1 : 0;
-  return phase == Phase::Feasibility ? 0 : contacts_[static_cast<std::size_t>(ray.contact)].closing.dot(ray.force);
+  return phase == Phase::Feasibility
+             ? 0
+             : contacts_[static_cast<std::size_t>(ray.contact)].closing.dot(ray.force);
 }
 
 ConeProgram::Entering ConeProgram::price(const Vector6& y, Phase phase) const {
@@ -54,7 +57,8 @@ ConeProgram::Entering ConeProgram::price(const Vector6& y, Phase phase) const {
     const double along_z = slack.z();
     const double slip = std::hypot(along_t, along_z);
     const double reduced = slack.dot(contact.normal) - mu_ * slip;
-    if (reduced < 0) best.shrink = std::min(best.shrink, contact.least_share / (contact.least_share - reduced));
+    if (reduced < 0)
+      best.shrink = std::min(best.shrink, contact.least_share / (contact.least_share - reduced));
     if (reduced >= best.reduced_cost) continue;
     best.reduced_cost = reduced;
     best.ray.contact = static_cast<int>(i);
@@ -91,7 +95,8 @@ void ConeProgram::refresh(State& state, const Vector6& b) const {
   state.x = (state.inverse * b).cwiseMax(0);
 }
 
-/// Brings a ray into the basis; false where nothing blocks it. An artificial at 0 leaves as soon as it would move.
+/// Brings a ray into the basis; false where nothing blocks it. An artificial at 0 leaves as soon as it would
+/// move.
 bool ConeProgram::replace(State& state, const Ray& ray, const Vector6& column, double cost) {
   const Vector6 w = state.inverse * column;
   const double pivot = kPivot * w.norm();
@@ -132,7 +137,8 @@ ConeProgram::End ConeProgram::run(State& state, const Vector6& b, Phase phase, d
       gap = value - entering.shrink * y.dot(b);
       if (gap <= kGap * std::max(1.0, value)) return End::Settled;
     }
-    if (!replace(state, entering.ray, column_of(entering.ray), cost_of(entering.ray, phase))) return End::Unbounded;
+    if (!replace(state, entering.ray, column_of(entering.ray), cost_of(entering.ray, phase)))
+      return End::Unbounded;
   }
   return End::Stalled;
 }
@@ -145,7 +151,8 @@ void ConeProgram::keep_forces(const State& state) {
   }
 }
 
-SqueezeOutcome ConeProgram::solve(const std::array<double, kernel::kRows>& right, const std::vector<Ray>& start) {
+SqueezeOutcome ConeProgram::solve(const std::array<double, kernel::kRows>& right,
+                                  const std::vector<Ray>& start) {
   const Vector6 b = Eigen::Map<const Vector6>(right.data());
   double gap = 0;
   State state = start.empty() ? artificial_start(b) : start_from(start, b);

@@ -24,10 +24,11 @@ class ConeProgram {
   /// The last optimum's contact forces, one a contact.
   [[nodiscard]] const std::vector<Vector3d>& forces_n() const { return forces_n_; }
 
-  /// Least squeeze for the right-hand side `b`, by a primal simplex that prices the continuum of rays in closed form
-  /// (the most negative reduced cost of a cone is u_n - mu |u_t|) and stops when the gap between its value and the dual bound,
-  /// y scaled towards 0 until feasible, is at most 1e-9 max(1, F). `start` are the rays of a feasible basis, such as the
-  /// pyramid's optimum, whose edges lie on the cone; empty: a first phase finds one. Needs a grasp that does not jam.
+  /// Least squeeze for the right-hand side `b`, by a primal simplex that prices the continuum of rays in
+  /// closed form (the most negative reduced cost of a cone is u_n - mu |u_t|) and stops when the gap between
+  /// its value and the dual bound, y scaled towards 0 until feasible, is at most 1e-9 max(1, F). `start` are
+  /// the rays of a feasible basis, such as the pyramid's optimum, whose edges lie on the cone; empty: a first
+  /// phase finds one. Needs a grasp that does not jam.
   SqueezeOutcome solve(const std::array<double, kernel::kRows>& b, const std::vector<Ray>& start);
 
  private:
@@ -35,10 +36,10 @@ class ConeProgram {
   using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
   struct Contact {
-    Vector3d arm;     // from the mean, scaled
+    Vector3d arm;  // from the mean, scaled
     Vector3d normal;
     Vector3d tangent;
-    Vector3d closing;  // squeeze per unit force
+    Vector3d closing;        // squeeze per unit force
     double least_share = 0;  // reduced cost at y = 0: n.closing - mu |t.closing|
   };
 

@@ -21,7 +21,9 @@ Wrench force_at(const Vector3d& p_mm, const Vector3d& force_n) {
   return wrench;
 }
 
-std::string named(const std::string& name, const char* kind) { return name.empty() ? kind : name; }
+std::string named(const std::string& name, const char* kind) {
+  return name.empty() ? kind : name;
+}
 
 /// `+z` along an axis, else the direction's unit components.
 std::string label_of(const Vector3d& direction) {
@@ -93,7 +95,8 @@ base::Expected<std::vector<Disturbance>> disturbances_of(const model::Task& task
     const Loads loads = std::visit(LoadsOf{body}, source);
     if (!loads) return loads;
     if (loads->size() != 1) {
-      return base::failure("always: a source of several loads cannot act all at once; list it under disturbances");
+      return base::failure(
+          "always: a source of several loads cannot act all at once; list it under disturbances");
     }
     always += loads->front().wrench;
   }

@@ -17,19 +17,23 @@ using kernel::kColumns;
 using kernel::kRows;
 constexpr int kWidth = kColumns + kRows;  // real columns, then one artificial a row
 constexpr double kFeasible = 1e-10;       // of |b|, the kernel's primal tolerance
-// Columns have length about 1 and rounding of 1e-16. A column that gains less than 1e-13 a newton is not worth entering; one
-// that gains more has an entry above a sixth of that, so the pivot tolerance lies below it.
+// Columns have length about 1 and rounding of 1e-16. A column that gains less than 1e-13 a newton is not
+// worth entering; one that gains more has an entry above a sixth of that, so the pivot tolerance lies below
+// it.
 constexpr double kReducedCost = 1e-13;
 constexpr double kPivot = 1e-15;
-constexpr double kRank = 1e-12;  // a row smaller than this is dependent
-constexpr int kMaxPivots = 20000;         // Bland's rule ends far earlier; reaching this is a bug
+constexpr double kRank = 1e-12;    // a row smaller than this is dependent
+constexpr int kMaxPivots = 20000;  // Bland's rule ends far earlier; reaching this is a bug
 
-Real magnitude(Real value) { return value < 0 ? -value : value; }
+Real magnitude(Real value) {
+  return value < 0 ? -value : value;
+}
 
 /// Rows kept in the form x_basis + T x_others = right, the right-hand side at least 0.
 class Tableau {
  public:
-  Tableau(const kernel::Program& program, int columns, const std::array<double, kRows>& b) : columns_(columns) {
+  Tableau(const kernel::Program& program, int columns, const std::array<double, kRows>& b)
+      : columns_(columns) {
     for (int k = 0; k < kRows; ++k) {
       const double sign = b[at(k)] < 0 ? -1 : 1;
       for (int j = 0; j < columns; ++j) rows_[at(k)][at(j)] = sign * program.a[k][j];
@@ -87,8 +91,8 @@ class Tableau {
     return -1;
   }
 
-  /// Bland: least ratio, then least basis index. An artificial that the second phase still has lies at 0 in a dependent
-  /// row, and does not block.
+  /// Bland: least ratio, then least basis index. An artificial that the second phase still has lies at 0 in a
+  /// dependent row, and does not block.
   [[nodiscard]] int blocking_row(int entering) const {
     int row = -1;
     for (int k = 0; k < kRows; ++k) {

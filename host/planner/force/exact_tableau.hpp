@@ -17,9 +17,10 @@ struct TableauOptimum {
 
 using TableauOutcome = std::variant<TableauOptimum, Unresistable, Unbounded>;
 
-/// The squeeze program by a two-phase tableau in quadruple precision under Bland's rule: a thousand times slower
-/// than the kernel, finite on every input and with no condition on the costs. For the answers that the kernel does not certify.
-/// `columns` is how many columns of the program are real. A load within 1e-10 of the cone counts as inside, as in the kernel.
+/// The squeeze program by a two-phase tableau in quadruple precision under Bland's rule: a thousand times
+/// slower than the kernel, finite on every input and with no condition on the costs. For the answers that the
+/// kernel does not certify. `columns` is how many columns of the program are real. A load within 1e-10 of the
+/// cone counts as inside, as in the kernel.
 TableauOutcome solve_in_quadruple_precision(const kernel::Program& program, int columns,
                                             const std::array<double, kernel::kRows>& b);
 

@@ -11,7 +11,8 @@
 namespace pinjaw::planner {
 namespace {
 
-constexpr double kEqual = 1e-9;  // relative: forces this close are equal, so that symmetry names the first wrench
+constexpr double kEqual =
+    1e-9;  // relative: forces this close are equal, so that symmetry names the first wrench
 
 double force_n(const SqueezeOutcome& outcome) {
   if (const auto* required = std::get_if<Required>(&outcome)) return required->force_n;
@@ -53,16 +54,17 @@ ForceVerdict evaluate_pyramid(SqueezeSolver& solver, std::span<const model::Wren
   return verdict_of(worst_of(forces_n), options);
 }
 
-/// F_max over the exact cone. The inscribed pyramid needs at least as much, so wrenches are taken in the order of its
-/// answer, and the rest are skipped once it needs no more than the worst cone found. Loads the pyramid cannot
-/// resist come first, in the list's order.
-ForceVerdict evaluate_cone(SqueezeSolver& solver, std::span<const model::Wrench> wrenches, const ForceOptions& options,
-                           std::vector<double>& forces_n) {
+/// F_max over the exact cone. The inscribed pyramid needs at least as much, so wrenches are taken in the
+/// order of its answer, and the rest are skipped once it needs no more than the worst cone found. Loads the
+/// pyramid cannot resist come first, in the list's order.
+ForceVerdict evaluate_cone(SqueezeSolver& solver, std::span<const model::Wrench> wrenches,
+                           const ForceOptions& options, std::vector<double>& forces_n) {
   forces_n.clear();
   for (const model::Wrench& wrench : wrenches) forces_n.push_back(force_n(solver.least_squeeze(wrench)));
   std::vector<std::size_t> order(wrenches.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return forces_n[a] > forces_n[b]; });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return forces_n[a] > forces_n[b]; });
   std::vector<double> cone_n(wrenches.size(), 0.0);
   double worst_n = 0;
   for (const std::size_t i : order) {
@@ -80,18 +82,21 @@ struct Worker {
   SqueezeSolver solver;
   std::vector<double> forces_n;
 
-  ForceVerdict verdict(const Grasp& grasp, std::span<const model::Wrench> wrenches, const ForceOptions& options) {
+  ForceVerdict verdict(const Grasp& grasp, std::span<const model::Wrench> wrenches,
+                       const ForceOptions& options) {
     if (const auto jaw = wedging_jaw(grasp)) return Wedges{*jaw};
     if (const auto contact = jamming_contact(grasp)) return Jams{contact->pin};
     solver.take(grasp);
-    return options.friction == model::FrictionModel::Cone ? evaluate_cone(solver, wrenches, options, forces_n)
-                                                          : evaluate_pyramid(solver, wrenches, options, forces_n);
+    return options.friction == model::FrictionModel::Cone
+               ? evaluate_cone(solver, wrenches, options, forces_n)
+               : evaluate_pyramid(solver, wrenches, options, forces_n);
   }
 };
 
 }  // namespace
 
-ForceVerdict evaluate(const Grasp& grasp, std::span<const model::Wrench> wrenches, const ForceOptions& options) {
+ForceVerdict evaluate(const Grasp& grasp, std::span<const model::Wrench> wrenches,
+                      const ForceOptions& options) {
   return Worker().verdict(grasp, wrenches, options);
 }
 

@@ -43,23 +43,25 @@ struct TooStrong {
   std::size_t critical = 0;
 };
 
-/// One outcome a design: held, or why it is discarded, tested in this order: wedges, jams, not resistable, too strong.
-/// (A grasp that does not jam cannot wedge, all forces of a jaw then having a part along its motion; so wedging comes first.)
+/// One outcome a design: held, or why it is discarded, tested in this order: wedges, jams, not resistable,
+/// too strong. (A grasp that does not jam cannot wedge, all forces of a jaw then having a part along its
+/// motion; so wedging comes first.)
 using ForceVerdict = std::variant<Holds, Wedges, Jams, NotResistable, TooStrong>;
 
 struct ForceOptions {
   model::FrictionModel friction = model::FrictionModel::Pyramid;
   double usable_n = std::numeric_limits<double>::infinity();  ///< Actuator::usable_squeeze_n()
-  /// Stop as soon as F_max is known to exceed this; the verdict is then TooStrong, whatever later wrenches would
-  /// have said. Nothing: every wrench is solved, so that the funnel's counts are exact.
+  /// Stop as soon as F_max is known to exceed this; the verdict is then TooStrong, whatever later wrenches
+  /// would have said. Nothing: every wrench is solved, so that the funnel's counts are exact.
   std::optional<double> stop_above_n;
 };
 
 /// The verdict on one grasp under `wrenches` (turned by the task's side; see turned_wrenches()).
-ForceVerdict evaluate(const Grasp& grasp, std::span<const model::Wrench> wrenches, const ForceOptions& options);
+ForceVerdict evaluate(const Grasp& grasp, std::span<const model::Wrench> wrenches,
+                      const ForceOptions& options);
 
-/// The verdicts on many grasps, in their order, on `threads` threads (0: as many as there are). The same bits for
-/// any number of threads.
+/// The verdicts on many grasps, in their order, on `threads` threads (0: as many as there are). The same bits
+/// for any number of threads.
 std::vector<ForceVerdict> evaluate_all(std::span<const Grasp> grasps, std::span<const model::Wrench> wrenches,
                                        const ForceOptions& options, int threads = 0);
 

@@ -22,16 +22,17 @@ struct PointContact {
 struct Grasp {
   static constexpr int kMaxContacts = 8;  ///< four pins, two points each (BB 3.5.2)
 
-  std::vector<PointContact> contacts;     ///< 1 to kMaxContacts
-  Vector2d x_P = Vector2d::UnitX();       ///< the gripper's +x in the turned part frame, unit
-  double mu = 0;                          ///< static friction coefficient, at least 0
+  std::vector<PointContact> contacts;  ///< 1 to kMaxContacts
+  Vector2d x_P = Vector2d::UnitX();    ///< the gripper's +x in the turned part frame, unit
+  double mu = 0;                       ///< static friction coefficient, at least 0
 };
 
-/// The grasp of a design with friction coefficient `mu`. A pin whose contact interval has a length touches at both
-/// its ends (BB 3.5.2), any other pin at one point.
+/// The grasp of a design with friction coefficient `mu`. A pin whose contact interval has a length touches at
+/// both its ends (BB 3.5.2), any other pin at one point.
 Grasp grasp_of(const model::Design& design, double mu);
 
-/// Share of a contact's force along `direction` that closes the gripper: +x for the left jaw, -x for the right (BB's sigma).
+/// Share of a contact's force along `direction` that closes the gripper: +x for the left jaw, -x for the
+/// right (BB's sigma).
 double squeeze_share(const Grasp& grasp, const PointContact& contact, const Vector3d& force_P);
 
 }  // namespace pinjaw::planner

@@ -1,22 +1,25 @@
 #pragma once
 
-/// The inner loop of the squeeze linear program: min c'x, A x = b, x >= 0 with 6 rows and at most 32 columns, for one A and c
-/// and many b. Plain arrays and no library, so that it can be compiled for several instruction sets in one program.
+/// The inner loop of the squeeze linear program: min c'x, A x = b, x >= 0 with 6 rows and at most 32 columns,
+/// for one A and c and many b. Plain arrays and no library, so that it can be compiled for several
+/// instruction sets in one program.
 ///
-/// Only b changes, so a dual vertex y (A'y <= c) found for one load is a valid lower bound y.b for every other; each vertex
-/// keeps the bases it was met with, for it has many (the two points of a pin share their vertical wrench).
+/// Only b changes, so a dual vertex y (A'y <= c) found for one load is a valid lower bound y.b for every
+/// other; each vertex keeps the bases it was met with, for it has many (the two points of a pin share their
+/// vertical wrench).
 namespace pinjaw::planner::kernel {
 
 inline constexpr int kRows = 6;
 inline constexpr int kLanes = 8;     ///< rows padded with zeros
 inline constexpr int kColumns = 32;  ///< 8 contacts of 4 rays, padded with zero columns of cost 1
-inline constexpr int kMaxVertices = 256;  ///< chosen: 302 loads visit some 52 (research: 52 to 121); past it nothing more is kept
+inline constexpr int kMaxVertices =
+    256;  ///< chosen: 302 loads visit some 52 (research: 52 to 121); past it nothing more is kept
 inline constexpr int kMaxBases = 512;
 
 /// A and c of one grasp. Every cost is above 0, so that y = 0 is dual feasible.
 struct alignas(64) Program {
-  double a[kRows][kColumns];   ///< rows of A
-  double at[kColumns][kLanes]; ///< columns of A
+  double a[kRows][kColumns];    ///< rows of A
+  double at[kColumns][kLanes];  ///< columns of A
   double cost[kColumns];
   double least_cost;
 };
@@ -40,7 +43,7 @@ struct alignas(64) Memory {
   int vertices;
   int bases;
   Basis basis[kMaxBases];
-  Basis last;                     ///< the last basis found that is not kept
+  Basis last;  ///< the last basis found that is not kept
 };
 
 enum class Status {
@@ -51,9 +54,9 @@ enum class Status {
 
 struct Answer {
   Status status = Status::Doubtful;
-  double value = 0;             ///< y.b
-  const Basis* basis = nullptr; ///< where Optimal; in the memory
-  double x[kLanes] = {};        ///< B^-1 b
+  double value = 0;              ///< y.b
+  const Basis* basis = nullptr;  ///< where Optimal; in the memory
+  double x[kLanes] = {};         ///< B^-1 b
   int pivots = 0;
 };
 

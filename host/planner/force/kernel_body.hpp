@@ -1,5 +1,6 @@
-// The kernel, compiled once for each instruction set: define PINJAW_KERNEL, then include. Everything here has internal
-// linkage and no library header is used, so no code of a wide instruction set can leak into the rest of the program.
+// The kernel, compiled once for each instruction set: define PINJAW_KERNEL, then include. Everything here has
+// internal linkage and no library header is used, so no code of a wide instruction set can leak into the rest
+// of the program.
 
 #include "host/planner/force/kernel.hpp"
 
@@ -18,23 +19,34 @@ constexpr int kLanePacks = kLanes / kWidth;
 constexpr int kColumnPacks = kColumns / kWidth;
 
 constexpr double kInfinity = __builtin_inf();
-// Chosen by comparison with quadruple precision (research: 1e-12 and 1e-13 change nothing; pivots of 1e-11 do harm).
-constexpr double kPrimalTolerance = 1e-10;       // of |b|
-constexpr double kPivotTolerance = 1e-9;         // of |rho|
+// Chosen by comparison with quadruple precision (research: 1e-12 and 1e-13 change nothing; pivots of 1e-11 do
+// harm).
+constexpr double kPrimalTolerance = 1e-10;  // of |b|
+constexpr double kPivotTolerance = 1e-9;    // of |rho|
 constexpr double kTieRelative = 1e-10;
 constexpr double kTieAbsolute = 1e-12;
-constexpr double kSameVertex = 1e-9;             // of |y|
-constexpr double kCertifiedError = 1e-10;        // of max(1, |F|)
-constexpr double kFarkasExcess = 1e-12;          // of |rho|: a ray may point this far to the wrong side
-constexpr double kFarkasDepth = 1e-9;            // of |rho| |b|: how clearly the load must lie outside
-constexpr int kMaxPivots = 100;                  // an ordinary cold start needs about 12
+constexpr double kSameVertex = 1e-9;       // of |y|
+constexpr double kCertifiedError = 1e-10;  // of max(1, |F|)
+constexpr double kFarkasExcess = 1e-12;    // of |rho|: a ray may point this far to the wrong side
+constexpr double kFarkasDepth = 1e-9;      // of |rho| |b|: how clearly the load must lie outside
+constexpr int kMaxPivots = 100;            // an ordinary cold start needs about 12
 
-inline double larger(double a, double b) { return a > b ? a : b; }
-inline double magnitude(double a) { return a < 0 ? -a : a; }
-inline double root(double a) { return __builtin_sqrt(a); }
+inline double larger(double a, double b) {
+  return a > b ? a : b;
+}
+inline double magnitude(double a) {
+  return a < 0 ? -a : a;
+}
+inline double root(double a) {
+  return __builtin_sqrt(a);
+}
 
-inline Pack load(const double* from) { return *reinterpret_cast<const Pack*>(from); }
-inline void store(double* to, Pack value) { *reinterpret_cast<Pack*>(to) = value; }
+inline Pack load(const double* from) {
+  return *reinterpret_cast<const Pack*>(from);
+}
+inline void store(double* to, Pack value) {
+  *reinterpret_cast<Pack*>(to) = value;
+}
 
 /// The state of one dual simplex run.
 struct alignas(64) Run {
@@ -99,7 +111,8 @@ inline Best best_vertex(const Memory& memory, const double* b) {
   best.value = -kInfinity;
   for (int lane = 0; lane < kWidth; ++lane) {
     const int vertex = static_cast<int>(where[lane]) * kWidth + lane;
-    if (top[lane] > best.value || (top[lane] == best.value && vertex < best.vertex)) best = {top[lane], vertex};
+    if (top[lane] > best.value || (top[lane] == best.value && vertex < best.vertex))
+      best = {top[lane], vertex};
   }
   if (best.vertex >= memory.vertices) best.vertex = memory.vertices - 1;
   return best;
@@ -134,7 +147,8 @@ inline int leaving_row(const Run& run, double tolerance) {
   alignas(64) double length2[kLanes];
   for (int p = 0; p < kLanePacks; ++p) {
     Pack sum = load(&run.inverse[0][p * kWidth]) * load(&run.inverse[0][p * kWidth]);
-    for (int k = 1; k < kRows; ++k) sum += load(&run.inverse[k][p * kWidth]) * load(&run.inverse[k][p * kWidth]);
+    for (int k = 1; k < kRows; ++k)
+      sum += load(&run.inverse[k][p * kWidth]) * load(&run.inverse[k][p * kWidth]);
     store(&length2[p * kWidth], sum);
   }
   int row = -1;
@@ -162,7 +176,8 @@ inline void pivot_row(const Program& program, int row, double sign, Run& run) {
   combine<kColumnPacks>(program.a, run.rho, run.alpha);
 }
 
-/// Dual ratio test: the column whose reduced cost reaches 0 first, among near ties the largest pivot; -1: none.
+/// Dual ratio test: the column whose reduced cost reaches 0 first, among near ties the largest pivot; -1:
+/// none.
 inline int entering_column(const Run& run) {
   const double pivot = -kPivotTolerance * run.rho_length;
   alignas(64) double ratio[kColumns];
@@ -218,7 +233,8 @@ inline bool proves_infeasible(const Run& run, const double* b) {
   double worst = 0;
   for (int j = 0; j < kColumns; ++j) worst = larger(worst, -run.alpha[j]);
   const double depth = -dot_rows(run.rho, b);
-  return worst <= kFarkasExcess * run.rho_length && depth >= kFarkasDepth * run.rho_length * largest_magnitude(b);
+  return worst <= kFarkasExcess * run.rho_length &&
+         depth >= kFarkasDepth * run.rho_length * largest_magnitude(b);
 }
 
 /// Takes logicals that lie at 0 out of the basis where a column can stand in; x stays, y stays dual feasible.
@@ -315,7 +331,8 @@ inline bool certified(const Program& program, const Basis& basis, double below, 
 
 inline bool same_vertex(const Memory& memory, int vertex, const Basis& basis) {
   double difference = 0;
-  for (int k = 0; k < kRows; ++k) difference = larger(difference, magnitude(memory.y[k][vertex] - basis.y[k]));
+  for (int k = 0; k < kRows; ++k)
+    difference = larger(difference, magnitude(memory.y[k][vertex] - basis.y[k]));
   return difference <= kSameVertex * basis.y_sum;
 }
 
@@ -348,10 +365,10 @@ inline const Basis* keep(Memory& memory, const Basis& basis) {
   return &memory.basis[place];
 }
 
-/// Looks among the bases of `vertex` for one that is feasible for b. Fills the answer where it is; else leaves the
-/// basis nearest to feasible in `nearest`.
-inline bool look_up(const Program& program, Memory& memory, int vertex, const double* b, double size, Answer& answer,
-                    int& nearest) {
+/// Looks among the bases of `vertex` for one that is feasible for b. Fills the answer where it is; else
+/// leaves the basis nearest to feasible in `nearest`.
+inline bool look_up(const Program& program, Memory& memory, int vertex, const double* b, double size,
+                    Answer& answer, int& nearest) {
   const double tolerance = kPrimalTolerance * size;
   double least = kInfinity;
   int previous = -1;

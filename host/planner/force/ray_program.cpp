@@ -12,8 +12,10 @@ GraspFrame frame_of(const Grasp& grasp) {
   const auto count = static_cast<double>(grasp.contacts.size());
   frame.p_PMean_mm /= count;
   double square_mm2 = 0;
-  for (const PointContact& contact : grasp.contacts) square_mm2 += (contact.p_P_mm - frame.p_PMean_mm).squaredNorm();
-  constexpr double kLeastLength_mm = 1e-3;  // chosen: one contact, or all at one point, has no extent to scale by
+  for (const PointContact& contact : grasp.contacts)
+    square_mm2 += (contact.p_P_mm - frame.p_PMean_mm).squaredNorm();
+  constexpr double kLeastLength_mm =
+      1e-3;  // chosen: one contact, or all at one point, has no extent to scale by
   frame.length_mm = std::max(kLeastLength_mm, std::sqrt(square_mm2 / count));
   return frame;
 }

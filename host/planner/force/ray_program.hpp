@@ -21,7 +21,8 @@ struct GraspFrame {
 
 GraspFrame frame_of(const Grasp& grasp);
 
-/// The four edges of a contact's friction pyramid: n + h (s1 t + s2 z), t = z x n, h the half-width (BB: mu/sqrt 2).
+/// The four edges of a contact's friction pyramid: n + h (s1 t + s2 z), t = z x n, h the half-width (BB:
+/// mu/sqrt 2).
 std::array<Vector3d, 4> pyramid_rays(const PointContact& contact, double half_width);
 
 /// Ray form of BB's linear program: column 4 i + k is edge k of contact i, its cost the ray's squeeze.

@@ -12,7 +12,8 @@ namespace {
 using geometry::Vector2d;
 using geometry::Vector3d;
 
-constexpr int kMostDrawsPerRay = 10000;  // chosen: a part fills far more than a ten-thousandth of its box's shadow
+constexpr int kMostDrawsPerRay =
+    10000;  // chosen: a part fills far more than a ten-thousandth of its box's shadow
 
 struct Box {
   Vector3d lo_mm;
@@ -53,8 +54,8 @@ bool line_meets(const Box& box, const Vector3d& p_mm, const Vector3d& direction)
   return from <= to;
 }
 
-/// A ray along `direction` from outside the part, its origin uniform over the box's shadow: drawn over the shadow's
-/// bounding rectangle, and again until it lies in the shadow.
+/// A ray along `direction` from outside the part, its origin uniform over the box's shadow: drawn over the
+/// shadow's bounding rectangle, and again until it lies in the shadow.
 geometry::Ray ray_over_shadow(const Box& box, const Vector3d& direction, base::Random& random) {
   const Vector3d u = direction.unitOrthogonal();
   const Vector3d v = direction.cross(u);
@@ -64,7 +65,8 @@ geometry::Ray ray_over_shadow(const Box& box, const Vector3d& direction, base::R
   const double reach_v_mm = half_mm.dot(v.cwiseAbs());
   Vector3d p_mm = middle_mm;
   for (int draw = 0; draw < kMostDrawsPerRay; ++draw) {
-    p_mm = middle_mm + random.uniform(-reach_u_mm, reach_u_mm) * u + random.uniform(-reach_v_mm, reach_v_mm) * v;
+    p_mm =
+        middle_mm + random.uniform(-reach_u_mm, reach_u_mm) * u + random.uniform(-reach_v_mm, reach_v_mm) * v;
     if (line_meets(box, p_mm, direction)) break;
   }
   constexpr double kStandOff_mm = 1;  // beyond the box: any value above 0
@@ -73,7 +75,8 @@ geometry::Ray ray_over_shadow(const Box& box, const Vector3d& direction, base::R
 
 }  // namespace
 
-base::Expected<std::vector<SprayHit>> spray_hits(const model::Spray& spray, const geometry::Surface& surface) {
+base::Expected<std::vector<SprayHit>> spray_hits(const model::Spray& spray,
+                                                 const geometry::Surface& surface) {
   const Box box = box_of(surface);
   base::Random random(spray.seed);
   const Vector3d from = spray.from ? Vector3d(spray.from->normalized()) : Vector3d::UnitZ();

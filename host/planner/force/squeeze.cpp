@@ -95,14 +95,16 @@ struct SqueezeSolver::Impl {
     return pyramid_rays(grasp.contacts[column / 4], grasp.mu / std::sqrt(2.0))[column % 4];
   }
 
-  /// Without friction the cone is the pyramid. Its certificate needs every share above 0: a grasp that does not jam.
+  /// Without friction the cone is the pyramid. Its certificate needs every share above 0: a grasp that does
+  /// not jam.
   SqueezeOutcome exact_cone(const RightHandSide& b) {
     if (grasp.mu <= 0) return pyramid(b);
     if (jams) return Unbounded{};
     const PyramidOptimum start = pyramid_in_full(b);
     std::vector<ConeProgram::Ray> rays;
     if (start.has_basis) {
-      for (const int column : start.basis) rays.push_back({column / 4, ray(static_cast<std::size_t>(column))});
+      for (const int column : start.basis)
+        rays.push_back({column / 4, ray(static_cast<std::size_t>(column))});
     }
     if (!cone) cone.emplace(grasp, frame);
     return cone->solve(b, rays);
@@ -110,12 +112,16 @@ struct SqueezeSolver::Impl {
 };
 
 SqueezeSolver::SqueezeSolver() : impl_(std::make_unique<Impl>()) {}
-SqueezeSolver::SqueezeSolver(const Grasp& grasp) : SqueezeSolver() { take(grasp); }
+SqueezeSolver::SqueezeSolver(const Grasp& grasp) : SqueezeSolver() {
+  take(grasp);
+}
 SqueezeSolver::SqueezeSolver(SqueezeSolver&&) noexcept = default;
 SqueezeSolver& SqueezeSolver::operator=(SqueezeSolver&&) noexcept = default;
 SqueezeSolver::~SqueezeSolver() = default;
 
-void SqueezeSolver::take(const Grasp& grasp) { impl_->take(grasp); }
+void SqueezeSolver::take(const Grasp& grasp) {
+  impl_->take(grasp);
+}
 
 SqueezeOutcome SqueezeSolver::least_squeeze(const model::Wrench& wrench, model::FrictionModel friction) {
   const RightHandSide b = impl_->frame.right_hand_side(wrench);
@@ -143,6 +149,8 @@ double SqueezeSolver::lower_bound_n(const model::Wrench& wrench) const {
   return impl_->kernel.lower_bound(*impl_->memory, impl_->frame.right_hand_side(wrench).data());
 }
 
-int SqueezeSolver::exact_solves() const { return impl_->exact_solves; }
+int SqueezeSolver::exact_solves() const {
+  return impl_->exact_solves;
+}
 
 }  // namespace pinjaw::planner
