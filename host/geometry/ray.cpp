@@ -30,9 +30,10 @@ double RayTest::entry_mm(const Box& box) const {
       if (lo_mm > 0 || hi_mm < 0) return kInfinity;
       continue;
     }
-    const auto [first, last] = std::minmax({lo_mm / direction_[axis], hi_mm / direction_[axis]});
-    near_mm = std::max(near_mm, first);
-    far_mm = std::min(far_mm, last);
+    const double at_lo_mm = lo_mm / direction_[axis];
+    const double at_hi_mm = hi_mm / direction_[axis];
+    near_mm = std::max(near_mm, std::min(at_lo_mm, at_hi_mm));
+    far_mm = std::min(far_mm, std::max(at_lo_mm, at_hi_mm));
   }
   return near_mm <= far_mm ? near_mm : kInfinity;
 }

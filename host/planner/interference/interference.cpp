@@ -115,11 +115,37 @@ Solid solid_of(const Actor& actor, const Plate& plate, double grown_mm) {
 
 bool pins_clash(const Actor& a, const Finger& a_pin, const Actor& b, const Finger& b_pin,
                 double clearance_mm) {
+  const bool away = a.motion == Motion::Away || b.motion == Motion::Away;
+  // Pins side by side are told from each other by the check of the way to where the open gripper leaves from.
+  if (away && overlap_in_z(a_pin.z_mm, b_pin.z_mm)) return false;
   if (!overlap_in_z(reach_z(a.set, a_pin.z_mm, a.motion), reach_z(b.set, b_pin.z_mm, b.motion))) return false;
   const double reach_mm = a.set.radius_mm + b.set.radius_mm + clearance_mm;
   if (distance2_mm2(track_of(a_pin, a.motion), track_of(b_pin, b.motion)) >= reach_mm * reach_mm)
     return false;
   return overlapping(solid_of(a, a_pin, clearance_mm / 2), solid_of(b, b_pin, clearance_mm / 2));
+}
+
+/// Any of the checks of two pins, most of which end with their heights.
+bool pins_ever_clash(const FingerSet& a, const Finger& a_pin, const FingerSet& b, const Finger& b_pin,
+                     double clearance_mm) {
+  const auto clash = [&](Motion a_motion, Motion b_motion) {
+    return pins_clash({a, a_motion}, a_pin, {b, b_motion}, b_pin, clearance_mm);
+  };
+  if (overlap_in_z(a_pin.z_mm, b_pin.z_mm)) {
+    return clash(Motion::Moves, Motion::Closed) || clash(Motion::Closed, Motion::Moves);
+  }
+  return clash(Motion::Away, Motion::Closed) || clash(Motion::Closed, Motion::Away);
+}
+
+bool pins_ever_clash(const FingerSet& a, const FingerSet& b) {
+  const double clearance_mm = std::max(a.clearance_mm, b.clearance_mm);
+  for (int i = 0; i < a.pin_count; ++i) {
+    for (int j = 0; j < b.pin_count; ++j) {
+      const Finger& a_pin = a.pins[static_cast<std::size_t>(i)];
+      if (pins_ever_clash(a, a_pin, b, b.pins[static_cast<std::size_t>(j)], clearance_mm)) return true;
+    }
+  }
+  return false;
 }
 
 using Clash = std::pair<FingerName, FingerName>;
@@ -164,8 +190,7 @@ std::optional<Clash> plate_clash(const Actor& a, const Actor& b, double clearanc
   return std::nullopt;
 }
 
-std::optional<Clash> clash(const Scene& scene) {
-  if (const auto pins = pin_clash(scene)) return pins;
+std::optional<Clash> plate_clash(const Scene& scene) {
   const Actor giver{scene.giver, scene.giver_motion};
   const Actor receiver{scene.receiver, scene.receiver_motion};
   if (const auto plates = plate_clash(giver, receiver, scene.clearance_mm())) return plates;
@@ -173,6 +198,11 @@ std::optional<Clash> clash(const Scene& scene) {
     return Clash{plates->second, plates->first};
   }
   return std::nullopt;
+}
+
+std::optional<Clash> clash(const Scene& scene) {
+  if (const auto pins = pin_clash(scene)) return pins;
+  return plate_clash(scene);
 }
 
 /// The first pin of `reaching` that reaches the floor on which the part of `resting` lies, touching included.
@@ -197,11 +227,6 @@ constexpr std::array kChecks{Check{HandoffCheck::BothClosed, Motion::Closed, Mot
                              Check{HandoffCheck::ReceiverMoves, Motion::Closed, Motion::Moves},
                              Check{HandoffCheck::GiverLeaves, Motion::Away, Motion::Closed},
                              Check{HandoffCheck::ReceiverComes, Motion::Closed, Motion::Away}};
-
-/// A gripper's way from closed to open holds where it is closed, so three of the checks say all of five.
-constexpr bool implied(HandoffCheck check) {
-  return check == HandoffCheck::BothClosed;
-}
 
 }  // namespace
 
@@ -241,8 +266,9 @@ HandoffVerdict check_handoff(const FingerSet& giver, const FingerSet& receiver) 
 
 bool compatible(const FingerSet& giver, const FingerSet& receiver) {
   if (floor_clash(giver, receiver) || floor_clash(receiver, giver)) return false;
+  if (pins_ever_clash(giver, receiver)) return false;
   return std::none_of(kChecks.begin(), kChecks.end(), [&](const Check& check) {
-    return !implied(check.name) && clash({giver, receiver, check.giver, check.receiver});
+    return plate_clash({giver, receiver, check.giver, check.receiver}).has_value();
   });
 }
 
