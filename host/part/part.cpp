@@ -58,8 +58,10 @@ base::Expected<std::vector<NamedShape>> selected(const std::vector<NamedShape>& 
   return selection.rest ? rest : base;
 }
 
-std::string name_of(const std::vector<NamedShape>& chosen, const std::filesystem::path& file) {
-  return chosen.size() == 1 && !chosen.front().name.empty() ? chosen.front().name : file.stem().string();
+/// CAD systems fill in product names of their own, so only a name that the caller asked for counts.
+std::string name_of(const model::PartSource& source, const Selection& selection) {
+  if (source.profile) return source.profile->name;
+  return selection.base.empty() || selection.rest ? source.file.stem().string() : selection.base;
 }
 
 double mass_kg(const model::PartSource& source, double volume_mm3) {
@@ -103,7 +105,7 @@ base::Expected<Part> part_of(const model::PartSource& source, const std::vector<
   for (EdgeCurve& edge : edges->edges) edge.curve = rotated(edge.curve, rotation);
   geometry::TriangleMesh mesh = rotated(std::move(meshed->mesh), rotation);
   auto walls = walls_of(*faces, rotation, mesh);
-  return Part{.name = name_of(chosen, source.file),
+  return Part{.name = {},
               .file = source.file,
               .sha256 = {},
               .surface = geometry::Surface(std::move(mesh)),
@@ -131,6 +133,7 @@ base::Expected<Part> read_part(const model::PartSource& source, const Selection&
   if (!chosen) return tl::unexpected(chosen.error());
   auto part = part_of(source, *solids, *chosen);
   if (!part) return base::failure(file + ": " + part.error().message);
+  part->name = name_of(source, selection);
   part->sha256 = base::sha256(*bytes);
   return part;
 }

@@ -32,7 +32,7 @@ struct EdgeCounts {
 
 /// A part in the part frame (DESIGN 2), or turned to its gripper by `turned`. Lengths in mm, mass in kg.
 struct Part {
-  std::string name;  ///< the profile's or product's name, else the file's stem
+  std::string name;  ///< the profile's, or the selected base's, else the file's stem
   std::filesystem::path file;
   std::string sha256;  ///< of the file's bytes
   geometry::Surface surface;

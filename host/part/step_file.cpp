@@ -1,4 +1,5 @@
 #include <IFSelect_ReturnStatus.hxx>
+#include <Interface_Check.hxx>
 #include <Interface_Static.hxx>
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
@@ -67,6 +68,26 @@ std::vector<NamedShape> solids_of(const STEPControl_Reader& reader, const TopoDS
   return solids;
 }
 
+/// CAD systems leave names out; nothing here follows them. Any other mistake leaves a reference to nothing or
+/// a number unset, and transferring those would read memory that is not there.
+bool is_harmless(std::string_view mistake) {
+  return mistake.find("not a quoted String") != std::string_view::npos;
+}
+
+/// The first mistake that the parser found in the file's entities; empty where there is none.
+std::string first_mistake(const STEPControl_Reader& reader) {
+  const Handle(StepData_StepModel) model = reader.StepModel();
+  for (Standard_Integer entity = 1; entity <= model->NbEntities(); ++entity) {
+    const Handle(Interface_Check) check = model->Check(entity, true);
+    for (Standard_Integer i = 1; i <= check->NbFails(); ++i) {
+      const std::string mistake = check->CFail(i);
+      if (is_harmless(mistake)) continue;
+      return "entity #" + std::to_string(model->IdentLabel(model->Value(entity))) + ": " + mistake;
+    }
+  }
+  return {};
+}
+
 constexpr std::string_view kFirstWords = "ISO-10303-21";
 constexpr std::string_view kLastWords = "END-ISO-10303-21";
 constexpr std::size_t kHeadBytes = 1024;  // comments may stand before the first words
@@ -79,6 +100,9 @@ base::Expected<std::vector<NamedShape>> read_checked(const std::string& text, co
   std::istringstream stream(text);
   if (reader.ReadStream(file.c_str(), stream) != IFSelect_RetDone) {
     return base::failure(file + ": the STEP file is broken: it cannot be parsed");
+  }
+  if (const std::string mistake = first_mistake(reader); !mistake.empty()) {
+    return base::failure(file + ": the STEP file is broken: " + mistake);
   }
   if (reader.TransferRoots() == 0) {
     return base::failure(file + ": the STEP file holds no shape that can be read");

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <string>
+
+#include "host/part/part.hpp"
+
+namespace pinjaw::part {
+
+inline std::filesystem::path shipped(const std::string& name) {
+  return std::filesystem::path(PINJAW_SOURCE_DIR) / "configs/parts" / (name + ".step");
+}
+
+inline model::PartSource source_of(const std::filesystem::path& file) {
+  model::PartSource source;
+  source.file = file;
+  source.density_g_cm3 = 2.81;
+  return source;
+}
+
+/// Volume enclosed by the surface's triangles.
+inline double enclosed_mm3(const geometry::TriangleMesh& mesh) {
+  double volume_mm3 = 0;
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const Eigen::Vector3d& p = mesh.vertices_mm[static_cast<std::size_t>(a)];
+    const Eigen::Vector3d& q = mesh.vertices_mm[static_cast<std::size_t>(b)];
+    const Eigen::Vector3d& r = mesh.vertices_mm[static_cast<std::size_t>(c)];
+    volume_mm3 += p.dot(q.cross(r)) / 6;
+  }
+  return volume_mm3;
+}
+
+}  // namespace pinjaw::part

@@ -1,0 +1,100 @@
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "host/planner/features/features.hpp"
+#include "tests/host/planner/features/brep_part.hpp"
+#include "tests/host/planner/features/feature_lists.hpp"
+
+namespace pinjaw::planner {
+namespace {
+
+model::PinStock stock() {
+  model::PinStock pins;
+  pins.radius_mm = 2.38125;
+  pins.min_engagement_mm = 1;
+  return pins;
+}
+
+TEST(ValveHousing, has_its_features_from_below_counted) {
+  const part::Part part = part_of(shipped_shape("valve_housing"));
+  const Features found = find_features(part, stock());
+  EXPECT_EQ(found.counts.candidates, 371);
+  EXPECT_EQ(found.counts.left_out_upright, 87);
+  EXPECT_EQ(found.counts.left_out_tilted, 2);
+  EXPECT_EQ(found.counts.left_out_freeform, 9);
+  EXPECT_EQ(found.counts.left_out_upright + found.counts.left_out_tilted + found.counts.left_out_freeform +
+                found.counts.candidates,
+            static_cast<int>(part.edges.size() + part.walls.size()));
+  EXPECT_EQ(found.counts.features, 59);
+  EXPECT_EQ(found.counts.reachable, 48);
+  EXPECT_NEAR(total_length_mm(found.features), 408.906, 0.01);
+}
+
+TEST(ValveHousing, has_other_features_from_above) {
+  const part::Part part = part::turned(part_of(shipped_shape("valve_housing")), model::Side::Above);
+  const Features found = find_features(part, stock());
+  EXPECT_EQ(found.counts.features, 81);
+  EXPECT_EQ(found.counts.reachable, 45);
+}
+
+/// No two features of one kind share their ends and free side.
+void expect_each_once(const std::vector<model::Feature>& features) {
+  for (const model::Feature& a : features) {
+    for (const model::Feature& b : features) {
+      if (a.id >= b.id || a.curve.index() != b.curve.index()) continue;
+      const double difference_mm = difference(trace_of(a), trace_of(b));
+      EXPECT_GT(difference_mm, 1e-3) << a.id << " and " << b.id;
+    }
+  }
+}
+
+TEST(ShippedParts, have_each_feature_once_with_reach_inside_it) {
+  for (const char* name : {"valve_housing", "cassette_chassis", "glue_gun_housing", "gear", "thin_tray"}) {
+    const Features found = find_features(part_of(shipped_shape(name)), stock());
+    expect_each_once(found.features);
+    int id = 0;
+    for (const model::Feature& feature : found.features) {
+      EXPECT_EQ(feature.id, id++);
+      EXPECT_GT(feature.edge, 0);
+      double end_mm = 0;
+      for (const auto& stretch : feature.reach_mm) {
+        EXPECT_GE(stretch.lo, end_mm) << name;
+        EXPECT_GT(stretch.hi, stretch.lo) << name;
+        end_mm = stretch.hi;
+      }
+      EXPECT_LE(end_mm, geometry::length_mm(feature.curve) + 1e-9) << name;
+    }
+  }
+}
+
+TEST(GlueGun, has_the_smooth_edge_above_its_fillet_as_outline) {
+  const part::Part part = part_of(shipped_shape("glue_gun_housing"));
+  bool outline_found = false;
+  for (const model::Feature& feature : find_features(part, stock()).features) {
+    const Trace trace = trace_of(feature);
+    const auto edge = part.surface.lowest_above(trace.middle_mm - kEpsMm * trace.normal);
+    ASSERT_TRUE(edge);
+    const bool outermost = !part.surface.lowest_above(trace.middle_mm + kEpsMm * trace.normal);
+    if (outermost && edge->point_mm.z() > 4 && edge->point_mm.z() < 5) outline_found = true;
+  }
+  EXPECT_TRUE(outline_found);
+}
+
+TEST(Outlines, show_more_from_both_sides_than_pins_can_touch) {
+  const part::Part part = part_of(shipped_shape("valve_housing"));
+  const Outlines seen = outlines(part);
+  double below_mm = 0;
+  for (const auto& curve : seen.from_below) below_mm += geometry::length_mm(curve);
+  EXPECT_GE(below_mm, total_length_mm(find_features(part, stock()).features));
+  EXPECT_GT(seen.from_above.size(), 50U);
+  for (const auto& curves : {seen.from_below, seen.from_above}) {
+    for (const auto& curve : curves) {
+      const Vector2d p_mm = geometry::point_at(curve, geometry::length_mm(curve) / 2);
+      EXPECT_LE(p_mm.cwiseAbs().maxCoeff(), 25.41);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace pinjaw::planner
