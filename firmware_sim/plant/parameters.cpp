@@ -2,8 +2,16 @@
 
 namespace pinjaw::plant {
 namespace {
-constexpr double kOpenAreaShare = 0.85;  // study: the rod takes the rest
-constexpr double kReliefShare = 1.07;    // the same: 150 N for 140 N
+constexpr double kOpenAreaShare = 0.85;    // study: the rod takes the rest
+constexpr double kStudyArea_m2 = 2.59e-4;  // the same
+constexpr double kStudyStroke_m = 0.007;   // the same
+constexpr double kReliefShare = 1.07;      // the same: 150 N for 140 N
+
+/// Volume of the close chamber at mid-stroke.
+double mid_volume_m3(const AirParameters& air, double stroke_m) {
+  return air.dead_volume_m3 + air.close_area_m2 * stroke_m / 2;
+}
+
 }  // namespace
 
 Parameters parameters_for(const Sizing& sizing) {
@@ -13,6 +21,11 @@ Parameters parameters_for(const Sizing& sizing) {
   parameters.air.relief_pa = kReliefShare * kSizingPressure_Pa;
   parameters.jaw.max_separation_m = sizing.max_separation_m;
   parameters.jaw.stroke_m = (sizing.max_separation_m - sizing.min_separation_m) / 2;
+  // The orifice is sized with the volume behind it, so that a regulator stuck open adds 0.45 N/ms at most.
+  AirParameters study = parameters.air;
+  study.close_area_m2 = kStudyArea_m2;
+  parameters.air.fill.conductance_m3_s_pa *=
+      mid_volume_m3(parameters.air, parameters.jaw.stroke_m) / mid_volume_m3(study, kStudyStroke_m);
   return parameters;
 }
 

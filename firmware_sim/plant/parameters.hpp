@@ -86,7 +86,7 @@ struct Parameters {
 
 constexpr double kSizingPressure_Pa = 5.4e5;  // gauge; study: 140 N from 2.59e-4 m2
 
-/// The figures above with the area, stroke and relief that follow from `sizing`.
+/// The figures above with the area, stroke, relief and fill orifice that follow from `sizing`.
 Parameters parameters_for(const Sizing& sizing);
 
 }  // namespace pinjaw::plant

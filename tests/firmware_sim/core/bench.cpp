@@ -166,7 +166,9 @@ std::optional<wire::Acknowledge> Bench::command(std::uint8_t node, wire::Command
 }
 
 std::optional<wire::Acknowledge> Bench::arm_session(std::uint8_t node) {
-  const auto answer = command(node, wire::arm_command(at(node).core.layouts.crc, epoch));
+  wire::Command arm = wire::arm_command(at(node).core.layouts.crc, epoch);
+  arm.sequence = arm_sequence_++ % 100U;  // another one each time: the same would be taken for a repeat
+  const auto answer = command(node, arm);
   if (answer && answer->result == wire::CommandResult::Ok) {
     session_[node] = answer->session;
     sequence_[node].begin(answer->next_sequence);

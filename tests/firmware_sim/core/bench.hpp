@@ -102,6 +102,7 @@ class Bench {
   std::array<wire::SequenceIssuer, 16> sequence_{};
   std::array<std::uint16_t, 16> session_{};
   std::uint8_t beat_counter_ = 0;
+  std::uint8_t arm_sequence_ = 0;
   std::uint32_t random_ = 12345;
 };
 

@@ -45,6 +45,7 @@ TEST(Handoff, goes_round_from_pallet_to_arm_to_pedestal_and_back) {
   ASSERT_TRUE(bench.hand_over(kArm, kPedestal));
   ASSERT_TRUE(bench.hand_over(kPedestal, kArm));
   ASSERT_TRUE(bench.hand_over(kArm, kPallet));
+  bench.run(5);
   EXPECT_EQ(unheld_ms, 0);
   EXPECT_EQ(bench.pallet().core.announced.fact, wire::Fact::Sole);
   EXPECT_EQ(bench.arm().core.announced.fact, wire::Fact::Released);

@@ -44,6 +44,7 @@ struct ToyJaw {
     constexpr std::int32_t kFriction_dn = 60;
     if (push_dn() > kFriction_dn && !touches()) {
       separation_10um = std::max({separation_10um - 12, 0, part_10um.value_or(0)});
+      if (valves.spool == Spool::Hold) close_mbar -= 4;  // shut in, the air expands
     } else if (push_dn() < -kFriction_dn) {
       separation_10um = std::min(separation_10um + 20, 6000);
     }

@@ -1,0 +1,139 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "tests/firmware_sim/core/bench.hpp"
+
+/// I7: a controller that held before a power cut holds after it.
+namespace pinjaw::core::test {
+namespace {
+
+struct Recovery : testing::Test {
+  Recovery() { bench.load_all(); }
+  void cut_power(std::uint8_t node, int off_ms = 50) {
+    bench.at(node).power_off();
+    bench.run(off_ms);
+    bench.at(node).power_on_again();
+  }
+  void until_taken() {
+    bench.load_gripper(kArm);
+    bench.arm_session(kPedestal);
+    bench.bring_part(kPedestal, true);
+    bench.command(kArm, wire::offer_command(kPedestal));
+    bench.run(100);
+    bench.command(kPedestal, wire::accept_command(kArm));
+    ASSERT_TRUE(bench.reaches(kPedestal, StateId::Seated));
+    bench.command(kPedestal, wire::squeeze_command({520, 1400}));
+    ASSERT_TRUE(bench.reaches(kPedestal, StateId::Taken));
+  }
+  Bench bench;
+};
+
+TEST_F(Recovery, of_a_sole_holder_holds) {
+  bench.load_gripper(kArm);
+  bench.run(20);
+  cut_power(kArm);
+  bench.run(3);
+  EXPECT_EQ(bench.arm().id(), StateId::Hold);
+  bench.run(1000);
+  EXPECT_GE(bench.arm().jaw.squeeze_dn(), 400);
+  EXPECT_EQ(bench.arm().core.announced.fact, wire::Fact::Sole);
+}
+
+TEST_F(Recovery, of_a_sole_holder_can_still_hand_over) {
+  bench.load_gripper(kArm);
+  bench.run(20);
+  cut_power(kArm);
+  bench.run(500);
+  EXPECT_TRUE(bench.hand_over(kArm, kPedestal));
+}
+
+TEST_F(Recovery, of_a_giver_with_an_offer_out_takes_it_back_only_with_a_good_hold) {
+  bench.load_gripper(kArm);
+  bench.command(kArm, wire::offer_command(kPedestal));
+  bench.run(20);
+  cut_power(kArm);
+  bench.after_step = [&] {
+    const bool retains = bench.arm().core.announced.fact == wire::Fact::Retain;
+    ASSERT_TRUE(!retains || bench.arm().jaw.squeeze_dn() >= 400);
+  };
+  EXPECT_TRUE(bench.reaches(kArm, StateId::Resqueeze, 5));
+  EXPECT_TRUE(bench.reaches(kArm, StateId::Hold));
+  bench.run(20);
+  EXPECT_EQ(bench.arm().core.announced.fact, wire::Fact::Retain);
+}
+
+TEST_F(Recovery, of_a_latched_receiver_stays_latched_and_completes) {
+  until_taken();
+  bench.run(10);
+  cut_power(kPedestal, 20);
+  bench.run(3);
+  EXPECT_EQ(bench.pedestal().id(), StateId::Taken);
+  EXPECT_EQ(bench.pedestal().core.announced.fact, wire::Fact::Unknown)
+      << "no TAKE before the hold is good again";
+  EXPECT_TRUE(bench.reaches(kPedestal, StateId::Hold)) << "the giver decides when it hears TAKE again";
+}
+
+TEST_F(Recovery, after_the_decision_goes_on_opening) {
+  until_taken();
+  ASSERT_TRUE(bench.reaches(kArm, StateId::Opening));
+  bench.run(2);
+  ASSERT_EQ(bench.arm().memory.record->custody, Custody::Decided);
+  cut_power(kArm, 10);
+  EXPECT_TRUE(bench.reaches(kArm, StateId::Loaded, 2000));
+  EXPECT_TRUE(bench.reaches(kPedestal, StateId::Hold));
+}
+
+TEST_F(Recovery, with_unreadable_memory_holds_and_says_so) {
+  bench.load_gripper(kArm);
+  bench.arm().power_off();
+  bench.arm().memory.readable = false;
+  bench.arm().power_on_again();
+  bench.run(10);
+  EXPECT_EQ(bench.arm().id(), StateId::FaultHold);
+  EXPECT_TRUE(bench.arm().core.faults.active(wire::FaultCode::CustodyMemory));
+  EXPECT_EQ(bench.arm().outputs.valves, Valves{});
+}
+
+TEST_F(Recovery, with_a_part_felt_and_no_record_holds_until_the_operator_decides) {
+  bench.arm().jaw.separation_10um = 3000;
+  bench.bring_part(kArm, true);
+  bench.arm().power_on_again();
+  bench.run(300);
+  ASSERT_EQ(bench.arm().id(), StateId::FaultHold);
+  bench.arm_session(kArm);
+  EXPECT_EQ(bench.result_of(kArm, wire::plain_command(wire::Op::ClearFault)), wire::CommandResult::Ok);
+  EXPECT_TRUE(bench.reaches(kArm, StateId::Hold, 10));
+  bench.run(1000);
+  EXPECT_GE(bench.arm().jaw.squeeze_dn(), 400);
+}
+
+TEST_F(Recovery, never_gives_out_a_session_twice) {
+  std::vector<std::uint16_t> seen;
+  for (int boot = 0; boot < 3; ++boot) {
+    for (int i = 0; i < 40; ++i) {
+      const auto answer = bench.arm_session(kArm);
+      ASSERT_TRUE(answer.has_value());
+      if (answer->result != wire::CommandResult::Ok) continue;
+      EXPECT_EQ(std::find(seen.begin(), seen.end(), answer->session), seen.end());
+      seen.push_back(answer->session);
+    }
+    cut_power(kArm);
+    bench.run(200);
+  }
+  EXPECT_GT(seen.size(), 100U);
+}
+
+TEST_F(Recovery, of_memory_that_fails_tells_nobody_a_fact_that_is_not_stored) {
+  bench.load_gripper(kArm);
+  bench.run(20);
+  bench.arm().memory_fails = true;
+  bench.command(kArm, wire::offer_command(kPedestal));
+  bench.run(100);
+  EXPECT_NE(bench.arm().core.announced.fact, wire::Fact::Offer);
+  EXPECT_TRUE(holds(bench.arm().id()));
+}
+
+}  // namespace
+}  // namespace pinjaw::core::test

@@ -1,0 +1,148 @@
+#include "firmware_sim/core/state_table.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "protocol/wire/names.hpp"
+
+namespace pinjaw::core {
+namespace {
+
+struct Row {
+  StateId state;
+  Event event;
+  StateId next;
+};
+
+using enum StateId;
+
+/// The reliability figures' table 2.6, row by row: every change of state there is, and no other.
+const std::vector<Row>& specified() {
+  static const std::vector<Row> kRows = {
+      {Boot, Event::BootLoaded, Loaded},
+      {Boot, Event::BootBare, Unconfigured},
+      {Boot, Event::BootHeld, Recover},
+      {Boot, Event::BootBad, FaultHold},
+      {Boot, Event::StoreFault, FaultHold},
+      {Recover, Event::RecordOffered, Resqueeze},
+      {Recover, Event::RecordLatched, Taken},
+      {Recover, Event::RecordDecided, Opening},
+      {Recover, Event::RecordSole, Hold},
+      {Recover, Event::RecordNone, FaultHold},
+      {Unconfigured, Event::CmdCommit, Loaded},
+      {Loaded, Event::CmdArmReady, Ready},
+      {Ready, Event::CmdAccept, Seating},
+      {Ready, Event::CmdCloseLight, Seating},
+      {Ready, Event::HostLost, Loaded},
+      {Ready, Event::CmdDisarm, Loaded},
+      {Ready, Event::CmdWrite, Loaded},
+      {Ready, Event::SensorFault, FaultEmpty},
+      {Ready, Event::StoreFault, FaultEmpty},
+      {Seating, Event::Contact, Seated},
+      {Seating, Event::NoPart, FaultEmpty},
+      {Seating, Event::Misseated, FaultEmpty},
+      {Seating, Event::SensorFault, FaultEmpty},
+      {Seating, Event::StoreFault, FaultEmpty},
+      {Seating, Event::CmdAbort, Ready},
+      {Seated, Event::CmdSqueeze, Squeezing},
+      {Seated, Event::CmdAbort, Ready},
+      {Seated, Event::SensorFault, FaultEmpty},
+      {Seated, Event::StoreFault, FaultEmpty},
+      {Squeezing, Event::HoldStableForPeer, Taken},
+      {Squeezing, Event::HoldStableForOperator, Hold},
+      {Squeezing, Event::OverForce, Seated},
+      {Squeezing, Event::SqueezeTimeout, Seated},
+      {Squeezing, Event::Slip, Seated},
+      {Squeezing, Event::HostLost, Seated},
+      {Squeezing, Event::CmdHold, Seated},
+      {Squeezing, Event::SensorFault, FaultEmpty},
+      {Squeezing, Event::StoreFault, FaultEmpty},
+      {Taken, Event::PeerReleased, Hold},
+      {Taken, Event::PeerRetained, Seated},
+      {Hold, Event::CmdOffer, Offered},
+      {Hold, Event::CmdManualRelease, Opening},
+      {Hold, Event::SensorFault, FaultHold},
+      {Hold, Event::StoreFault, FaultHold},
+      {Offered, Event::PeerHolds, Relax},
+      {Offered, Event::CmdAbort, Hold},
+      {Offered, Event::CmdHold, Hold},
+      {Offered, Event::OfferUnanswered, Hold},
+      {Offered, Event::HoldLost, Hold},
+      {Offered, Event::SensorFault, Hold},
+      {Offered, Event::StoreFault, Hold},
+      {Relax, Event::PeerWatched, Opening},
+      {Relax, Event::PeerDoubted, Resqueeze},
+      {Relax, Event::Slip, Resqueeze},
+      {Relax, Event::CmdAbort, Resqueeze},
+      {Relax, Event::CmdHold, Resqueeze},
+      {Relax, Event::SensorFault, Resqueeze},
+      {Relax, Event::StoreFault, Resqueeze},
+      {Resqueeze, Event::HoldRestored, Hold},
+      {Opening, Event::Opened, Ready},
+      {Opening, Event::OpenTimeout, FaultEmpty},
+      {Opening, Event::StoreFault, FaultHold},
+      {FaultHold, Event::CmdClearFault, Recover},
+      {FaultHold, Event::CmdClearEmpty, Loaded},
+      {FaultEmpty, Event::CmdClearEmpty, Loaded},
+      {FaultEmpty, Event::CmdAbort, Ready},
+  };
+  return kRows;
+}
+
+const Row* find(StateId state, Event event) {
+  for (const Row& row : specified()) {
+    if (row.state == state && row.event == event) return &row;
+  }
+  return nullptr;
+}
+
+template <class Visit>
+void for_every_pair(Visit visit) {
+  for (std::size_t s = 0; s < kStates; ++s) {
+    for (std::size_t e = 0; e < kEvents; ++e) visit(static_cast<StateId>(s), static_cast<Event>(e));
+  }
+}
+
+TEST(StateTable, has_every_row_of_the_specification) {
+  for (const Row& row : specified()) {
+    const Reaction what = reaction(row.state, row.event);
+    EXPECT_EQ(what.kind, ReactionKind::Go)
+        << wire::to_string(row.state) << " " << static_cast<int>(row.event);
+    EXPECT_EQ(what.next, row.next) << wire::to_string(row.state) << " " << static_cast<int>(row.event);
+  }
+}
+
+TEST(StateTable, changes_state_for_nothing_else) {
+  for_every_pair([](StateId state, Event event) {
+    const bool goes = reaction(state, event).kind == ReactionKind::Go;
+    EXPECT_EQ(goes, find(state, event) != nullptr)
+        << wire::to_string(state) << " by event " << static_cast<int>(event);
+  });
+}
+
+TEST(StateTable, refuses_every_command_that_is_not_listed) {
+  for_every_pair([](StateId state, Event event) {
+    const ReactionKind kind = reaction(state, event).kind;
+    if (is_command(event)) {
+      EXPECT_NE(kind, ReactionKind::Ignored) << wire::to_string(state) << " " << static_cast<int>(event);
+    } else {
+      EXPECT_NE(kind, ReactionKind::Refused) << wire::to_string(state) << " " << static_cast<int>(event);
+    }
+  });
+}
+
+TEST(StateTable, leads_from_boot_to_every_state) {
+  std::vector<bool> reached(kStates, false);
+  reached[0] = true;
+  for (std::size_t round = 0; round < kStates; ++round) {
+    for (const Row& row : specified()) {
+      if (reached[static_cast<std::size_t>(row.state)]) reached[static_cast<std::size_t>(row.next)] = true;
+    }
+  }
+  for (std::size_t s = 0; s < kStates; ++s)
+    EXPECT_TRUE(reached[s]) << wire::to_string(static_cast<StateId>(s));
+}
+
+}  // namespace
+}  // namespace pinjaw::core
