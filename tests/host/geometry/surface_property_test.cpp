@@ -65,6 +65,23 @@ TEST(SurfaceProperty, the_lowest_and_highest_z_lie_between_the_referees_brackets
   EXPECT_TRUE(held);
 }
 
+TEST(SurfaceProperty, a_rectangle_meets_what_the_referee_finds_in_it) {
+  const bool held = rc::check("rectangles", [](std::uint64_t seed) {
+    base::Random random(seed);
+    const Surface surface{random_mesh(random, 1 + static_cast<int>(random.uniform(0, 12)))};
+    for (int i = 0; i < 20; ++i) {
+      const Rectangle region{{random.uniform(-12, 12), random.uniform(-12, 12)},
+                             direction(random.uniform() < 0.3 ? 0 : random.uniform(0, 6)),
+                             {random.uniform(0.1, 6), random.uniform(0.1, 6)}};
+      const Slab slab = random_slab(random);
+      const bool met = surface.meets(region, slab);
+      if (met) RC_ASSERT(testing::meets_rectangle(surface.mesh(), region, slab, kRoundingMm));
+      if (!met) RC_ASSERT(!testing::meets_rectangle(surface.mesh(), region, slab, -kRoundingMm));
+    }
+  });
+  EXPECT_TRUE(held);
+}
+
 TEST(SurfaceProperty, a_larger_region_reaches_at_least_as_far) {
   const bool held = rc::check("monotone", [](std::uint64_t seed) {
     base::Random random(seed);

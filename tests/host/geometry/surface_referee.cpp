@@ -74,6 +74,27 @@ Bracket highest_bracket_mm(const TriangleMesh& mesh, const Sweep& region, const 
           z_range(mesh, region, slab, inner_radius_mm(region)).hi};
 }
 
+bool meets_rectangle(const TriangleMesh& mesh, const Rectangle& region, const Slab& slab, double grown_mm) {
+  const Vector2d across{-region.direction.y(), region.direction.x()};
+  for (const auto& t : mesh.triangles) {
+    Polygon polygon;
+    for (const int corner : t) polygon.push_back(mesh.vertices_mm[static_cast<std::size_t>(corner)]);
+    for (const double sign : {-1.0, 1.0}) {
+      const auto beyond = [&](const Vector2d& axis, double half_mm) {
+        return [&region, axis, half_mm, sign, grown_mm](const Vector3d& p) {
+          return sign * axis.dot(p.head<2>() - region.center_mm) - half_mm - grown_mm;
+        };
+      };
+      polygon = cut(polygon, beyond(region.direction, region.half_mm.x()));
+      polygon = cut(polygon, beyond(across, region.half_mm.y()));
+    }
+    polygon = cut(polygon, [&](const Vector3d& p) { return slab.lo_mm - grown_mm - p.z(); });
+    polygon = cut(polygon, [&](const Vector3d& p) { return p.z() - slab.hi_mm - grown_mm; });
+    if (!polygon.empty()) return true;
+  }
+  return false;
+}
+
 double first_hit_mm(const TriangleMesh& mesh, const Ray& ray) {
   double nearest = kInfinity;
   for (const auto& t : mesh.triangles) {

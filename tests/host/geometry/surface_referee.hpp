@@ -15,6 +15,9 @@ struct Bracket {
 Bracket lowest_bracket_mm(const TriangleMesh& mesh, const Sweep& region, const Slab& slab);
 Bracket highest_bracket_mm(const TriangleMesh& mesh, const Sweep& region, const Slab& slab);
 
+/// Whether any facet reaches into the rectangle with each half extent grown by `grown_mm`, within the slab.
+bool meets_rectangle(const TriangleMesh& mesh, const Rectangle& region, const Slab& slab, double grown_mm);
+
 /// Distance to the first facet along the ray by testing all of them with plain Moeller-Trumbore; +inf where
 /// none.
 double first_hit_mm(const TriangleMesh& mesh, const Ray& ray);
