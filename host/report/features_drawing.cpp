@@ -57,7 +57,7 @@ std::string path(const geometry::Curve& curve, const geometry::Interval& along_m
 }
 
 std::string feature_paths(const model::Feature& feature) {
-  constexpr const char* kReachable = "stroke=\"#0a5ad6\" stroke-width=\"0.9\" stroke-linecap=\"round\"";
+  constexpr const char* kReachable = "stroke=\"#0a5ad6\" stroke-width=\"0.6\" stroke-linecap=\"round\"";
   constexpr const char* kUnreachable = "stroke=\"#d06000\" stroke-width=\"0.5\" stroke-dasharray=\"1 1\"";
   std::string text = path(feature.curve, {0, geometry::length_mm(feature.curve)}, kUnreachable);
   for (const geometry::Interval& piece : feature.reach_mm) text += path(feature.curve, piece, kReachable);
@@ -66,8 +66,8 @@ std::string feature_paths(const model::Feature& feature) {
 
 std::string feature_label(const model::Feature& feature) {
   const double middle_mm = geometry::length_mm(feature.curve) / 2;
-  const Vector2d p = geometry::point_at(feature.curve, middle_mm) - 2.2 * model::outward_normal_at(feature, middle_mm);
-  return fmt::format("<text x=\"{:.3f}\" y=\"{:.3f}\">{}</text>\n", p.x(), -p.y() + 0.8, feature.id);
+  const Vector2d p = geometry::point_at(feature.curve, middle_mm) - 1.5 * model::outward_normal_at(feature, middle_mm);
+  return fmt::format("<text x=\"{:.3f}\" y=\"{:.3f}\">{}</text>\n", p.x(), -p.y() + 0.55, feature.id);
 }
 
 std::string escaped(const std::string& text) {
@@ -88,7 +88,7 @@ std::string features_svg(const FeaturesDrawing& drawing) {
   for (const model::Feature& feature : drawing.features) box.add(feature.curve);
   for (const geometry::Curve& curve : drawing.seen_from_gripper) box.add(curve);
   if (!std::isfinite(box.x_lo)) box = {0, 50, 0, 20};
-  const double width = std::max(90.0, box.x_hi - box.x_lo + 2 * kMarginMm);
+  const double width = std::max(110.0, box.x_hi - box.x_lo + 2 * kMarginMm);
   const double height = box.y_hi - box.y_lo + 2 * kMarginMm + kFootMm;
   const double foot_y = -box.y_lo + kMarginMm + 4;
 
@@ -101,13 +101,13 @@ std::string features_svg(const FeaturesDrawing& drawing) {
     svg += path(curve, {0, geometry::length_mm(curve)}, "stroke=\"#999\" stroke-width=\"0.25\"");
   }
   for (const model::Feature& feature : drawing.features) svg += feature_paths(feature);
-  svg += "</g>\n<g font-family=\"sans-serif\" font-size=\"2.4\" text-anchor=\"middle\" fill=\"#333\">\n";
+  svg += "</g>\n<g font-family=\"sans-serif\" font-size=\"1.6\" text-anchor=\"middle\" fill=\"#333\">\n";
   for (const model::Feature& feature : drawing.features) svg += feature_label(feature);
   svg += fmt::format(
       "</g>\n<g font-family=\"sans-serif\" font-size=\"3\" fill=\"#000\" transform=\"translate({:.3f} {:.3f})\">\n"
       "<path d=\"M0 0 h50 M0 -1.5 v3 M50 -1.5 v3\" stroke=\"#000\" stroke-width=\"0.3\"/><text x=\"52\" y=\"1\">50 mm</text>\n"
       "<circle cx=\"72\" cy=\"0\" r=\"{:.4f}\" fill=\"none\" stroke=\"#000\" stroke-width=\"0.3\"/>\n"
-      "<text x=\"0\" y=\"6.5\">{}: {} features; blue: a closed pin has room; dashed: it has none</text>\n</g>\n</svg>\n",
+      "<text x=\"0\" y=\"6.5\">{}: {} features; blue: a closed pin has room</text>\n</g>\n</svg>\n",
       box.x_lo, foot_y, drawing.pin_radius_mm, escaped(drawing.title), drawing.features.size());
   return svg;
 }

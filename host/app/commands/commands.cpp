@@ -8,6 +8,13 @@ void add_commands(CLI::App& app, Context& context) {
   add_features(app, context);
   add_why(app, context);
   add_check(app, context);
+  add_cell(app, context);
+  add_sheet(app, context);
+  add_kit(app, context);
+  add_send(app, context);
+  add_jaw(app, context);
+  add_run(app, context);
+  add_dbc(app, context);
 }
 
 }  // namespace pinjaw::app

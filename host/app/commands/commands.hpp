@@ -10,6 +10,13 @@ void add_planar(CLI::App& app, Context& context);
 void add_features(CLI::App& app, Context& context);
 void add_why(CLI::App& app, Context& context);
 void add_check(CLI::App& app, Context& context);
+void add_cell(CLI::App& app, Context& context);
+void add_sheet(CLI::App& app, Context& context);
+void add_kit(CLI::App& app, Context& context);
+void add_send(CLI::App& app, Context& context);
+void add_jaw(CLI::App& app, Context& context);
+void add_run(CLI::App& app, Context& context);
+void add_dbc(CLI::App& app, Context& context);
 
 /// All of them, in the order of the help.
 void add_commands(CLI::App& app, Context& context);

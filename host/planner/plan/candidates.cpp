@@ -61,7 +61,7 @@ Outcome design_of(const PlanarFixture& fixture, const Heights& heights, const mo
   std::array<PinToLoad, 4> pins;
   for (std::size_t i = 0; i < pins.size(); ++i) {
     const PinHeight& height = (*standing)[i];
-    pins[i] = {fixture.pins[i], height.length_mm, height.top_mm, height.contact_z_mm};
+    pins[i] = {i, height.length_mm, height.top_mm, height.contact_z_mm};
   }
   auto design = load(fixture, pins, kit, surroundings, options);
   if (!design) return design.error();

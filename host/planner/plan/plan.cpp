@@ -64,8 +64,8 @@ void judge(std::vector<model::Design> designs, const std::vector<ForceVerdict>& 
       continue;
     }
     ++plan.funnel.not_wedging;
-    if (const auto* unheld = std::get_if<NotResistable>(&verdict)) {
-      ++losses["no squeeze resists " + plan.disturbances[unheld->critical].name];
+    if (std::holds_alternative<NotResistable>(verdict)) {
+      ++losses["no squeeze resists every disturbance"];
       continue;
     }
     ++plan.funnel.resistable;
@@ -77,7 +77,7 @@ void judge(std::vector<model::Design> designs, const std::vector<ForceVerdict>& 
     const auto& holds = std::get<Holds>(verdict);
     const double usable_n = plan.kit.actuator.usable_squeeze_n();
     designs[i].squeeze = {holds.required_n, usable_n, plan.kit.actuator.max_squeeze_n, usable_n - holds.required_n,
-                          plan.disturbances[holds.critical].name};
+                          plan.disturbances.empty() ? "none" : plan.disturbances[holds.critical].name};
     plan.designs.push_back(std::move(designs[i]));
   }
 }
