@@ -91,7 +91,7 @@ struct NvmStatus {
 /// Everything a controller learns in one step.
 struct Inputs {
   std::uint32_t elapsed_ms = 1;
-  std::span<const wire::Frame> received;  ///< since the last step, in order of arrival
+  std::span<const wire::Frame> received{};  ///< since the last step, in order of arrival
   Sensors sensors;
   NvmStatus nvm;
 };

@@ -100,7 +100,7 @@ State power_on(const Config& config, const NvmImage& image) {
     restore_layout(state, image.layout);
     save(state.store, record);
   }
-  state.timers.force.start(wire::kForceOffset_ms);
+  state.timers.force.start(wire::kForceOffset_ms + 1);  // the first STATE goes out after 1 ms
   return state;
 }
 

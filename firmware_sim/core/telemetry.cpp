@@ -134,6 +134,7 @@ void report_identity(State& state, std::uint16_t elapsed_ms, SendQueue& queue) {
   if (++state.identity_page == kIdentityPages) {
     state.identity_page = 0;
     state.identity_burst = false;
+    state.timers.identity.start(wire::kIdentityPeriod_ms);
   }
 }
 

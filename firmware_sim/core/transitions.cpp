@@ -169,9 +169,9 @@ void enter_hold(State& state, StateId from) {
       break;
     default:
       take_up_recorded_force(state);
-      break;
+      return grip_here(state);
   }
-  grip_here(state);
+  state.reference_10um = state.measurement.separation_10um;
 }
 
 void enter_offered(State& state) {
