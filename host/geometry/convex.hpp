@@ -35,7 +35,7 @@ double plan_distance_mm(const Sweep& a, const Rectangle& b);
 /// way.
 Overlap overlap(const Solid& a, const Solid& b);
 
-inline constexpr unsigned long kOverlapIterations =
-    200;  ///< chosen: several times what the hardest random case took
+/// Chosen: over twice what the hardest took of 800 000 random pairs, half of them within 1e-5 mm of touching (85).
+inline constexpr unsigned long kOverlapIterations = 200;
 
 }  // namespace pinjaw::geometry
