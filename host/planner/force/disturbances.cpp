@@ -13,7 +13,7 @@ using model::Disturbance;
 using model::Wrench;
 using Loads = base::Expected<std::vector<Disturbance>>;
 
-constexpr double kStandardGravity_m_s2 = 9.80665;  // by definition, CGPM 1901
+constexpr double kStandardGravity = 9.80665;  // m/s2, by definition, CGPM 1901
 
 Wrench force_at(const Vector3d& p_mm, const Vector3d& force_n) {
   Wrench wrench;
@@ -40,14 +40,18 @@ struct LoadsOf {
   const Body& body;
 
   Loads operator()(const model::Gravity& gravity) const {
-    const Vector3d weight_n = body.mass_kg * kStandardGravity_m_s2 * gravity.direction.normalized();
+    if (body.mass_kg <= 0) return base::failure("gravity needs the part's mass: give a material or mass_kg");
+    const Vector3d weight_n = body.mass_kg * kStandardGravity * gravity.direction.normalized();
     return std::vector<Disturbance>{{named(gravity.name, "gravity"), force_at(body.centroid_mm, weight_n)}};
   }
 
   Loads operator()(const model::Acceleration& acceleration) const {
+    if (body.mass_kg <= 0) {
+      return base::failure("an acceleration needs the part's mass: give a material or mass_kg");
+    }
     std::vector<Disturbance> loads;
     const std::string name = named(acceleration.name, "acceleration");
-    const double force_n = body.mass_kg * acceleration.peak_g * kStandardGravity_m_s2;
+    const double force_n = body.mass_kg * acceleration.peak_g * kStandardGravity;
     for (const Vector3d& along : acceleration.along) {
       loads.push_back({fmt::format("{}[{}]", name, label_of(along)),
                        force_at(body.centroid_mm, force_n * along.normalized())});
@@ -92,7 +96,7 @@ void tell_apart(std::vector<Disturbance>& loads, std::map<std::string, int>& see
 base::Expected<std::vector<Disturbance>> disturbances_of(const model::Task& task, const Body& body) {
   Wrench always = Wrench::Zero();
   for (const model::DisturbanceSource& source : task.always) {
-    const Loads loads = std::visit(LoadsOf{body}, source);
+    Loads loads = std::visit(LoadsOf{body}, source);
     if (!loads) return loads;
     if (loads->size() != 1) {
       return base::failure(

@@ -10,7 +10,7 @@ namespace pinjaw::planner {
 
 /// What disturbances act on, in the part frame (before `side` turns it).
 struct Body {
-  double mass_kg = 0;
+  double mass_kg = 0;  ///< above 0 where gravity or an acceleration is named
   geometry::Vector3d centroid_mm = geometry::Vector3d::Zero();
   const geometry::Surface* surface = nullptr;  ///< for spray rays; may be null where no spray is named
 };
@@ -20,8 +20,8 @@ struct Body {
 /// Names: the source's name, or its kind; sources that stand for several loads add `[17]` or `[+z]`; equal
 /// names are told apart by a number. A spray's sample depends on its seed and the body alone, so stations
 /// that name the same spray get the same sample (DESIGN 3.1, 10). With `always` alone, the one disturbance is
-/// called `always`. Fails where `always` holds a source of several loads, or a spray whose rays do not find
-/// the part.
+/// called `always`. Fails where `always` holds a source of several loads, where a weight is asked of a body
+/// without mass, or a spray whose rays do not find the part.
 base::Expected<std::vector<model::Disturbance>> disturbances_of(const model::Task& task, const Body& body);
 
 /// One load of a source and the suffix of its name.

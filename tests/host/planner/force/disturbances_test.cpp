@@ -91,6 +91,14 @@ TEST(Disturbances, refuse_a_source_of_several_loads_that_would_act_always) {
   EXPECT_FALSE(disturbances_of(task, body_of(surface)).has_value());
 }
 
+TEST(Disturbances, refuse_the_weight_of_a_part_without_mass) {
+  model::Task task;
+  task.disturbances = {model::Gravity{}};
+  EXPECT_FALSE(disturbances_of(task, {}).has_value());
+  task.disturbances = {model::Acceleration{"", 1, {Vector3d::UnitX()}}};
+  EXPECT_FALSE(disturbances_of(task, {}).has_value());
+}
+
 TEST(Spray, hits_the_surface_and_pushes_into_it_along_the_facet) {
   const geometry::Surface surface = block();
   const auto hits = spray_hits(spray(500, 1), surface);
