@@ -44,8 +44,7 @@ class ShippedPart : public testing::TestWithParam<Figures> {};
 
 TEST_P(ShippedPart, has_the_figures_it_was_drawn_with_and_a_closed_mesh_with_normals_outwards) {
   const Figures& figures = GetParam();
-  const auto part = read_part(source_of(shipped(figures.name)));
-  ASSERT_TRUE(part) << part.error().message;
+  const Part* part = &shipped_part(figures.name);
   EXPECT_EQ(part->name, figures.name);
   EXPECT_EQ(static_cast<int>(part->solids.size()), figures.solids);
   EXPECT_EQ(std::ranges::max(part->surface.mesh().face_of), figures.faces);
@@ -66,8 +65,7 @@ std::string name_of_figures(const testing::TestParamInfo<Figures>& info) {
 INSTANTIATE_TEST_SUITE_P(Parts, ShippedPart, testing::ValuesIn(kFigures), name_of_figures);
 
 TEST(Part, tells_the_bytes_it_was_read_from) {
-  const auto part = read_part(source_of(shipped("l_bracket")));
-  ASSERT_TRUE(part) << part.error().message;
+  const Part* part = &shipped_part("l_bracket");
   EXPECT_EQ(part->sha256, "c5e9fe3301eed5d78ee211e5dbabb2f3daf4f24e07c28a794f2699a7fe528c02");
 }
 
@@ -79,8 +77,7 @@ TEST(Part, takes_a_stated_mass_as_it_is) {
 }
 
 TEST(Part, names_the_solids_of_an_assembly) {
-  const auto part = read_part(source_of(shipped("glue_gun_assembly")));
-  ASSERT_TRUE(part) << part.error().message;
+  const Part* part = &shipped_part("glue_gun_assembly");
   std::vector<std::string> names;
   for (const Solid& solid : part->solids) names.push_back(solid.name);
   EXPECT_THAT(names, testing::ElementsAre("housing", "nozzle", "heater", "trigger", "stick_carriage",
@@ -90,7 +87,7 @@ TEST(Part, names_the_solids_of_an_assembly) {
 
 TEST(Part, is_the_base_solid_of_an_assembly_or_all_the_others) {
   const model::PartSource source = source_of(shipped("glue_gun_assembly"));
-  const auto whole = read_part(source);
+  const Part* whole = &shipped_part("glue_gun_assembly");
   const auto base = read_part(source, {.base = "Housing"});
   const auto rest = read_part(source, {.base = "housing", .rest = true});
   ASSERT_TRUE(whole && base && rest);
@@ -108,21 +105,18 @@ TEST(Part, says_which_solids_there_are_when_the_base_is_none_of_them) {
 }
 
 TEST(Part, drops_seams_and_keeps_every_other_edge_of_a_cylinder) {
-  const auto part = read_part(source_of(shipped("valve_housing")));
-  ASSERT_TRUE(part) << part.error().message;
+  const Part* part = &shipped_part("valve_housing");
   EXPECT_EQ(part->edge_counts,
             (EdgeCounts{.total = 408, .kept = 377, .seams = 31, .degenerate = 0, .freeform = 9}));
 }
 
 TEST(Part, knows_which_faces_an_edge_lies_between) {
-  const auto part = read_part(source_of(shipped("l_bracket")));
-  ASSERT_TRUE(part) << part.error().message;
+  const Part* part = &shipped_part("l_bracket");
   for (const EdgeCurve& edge : part->edges) EXPECT_EQ(edge.faces.size(), 2U) << edge.edge;
 }
 
 TEST(Part, has_its_upright_planes_and_cylinders_as_walls) {
-  const auto part = read_part(source_of(shipped("valve_housing")));
-  ASSERT_TRUE(part) << part.error().message;
+  const Part* part = &shipped_part("valve_housing");
   const auto round = std::ranges::count_if(
       part->walls, [](const Wall& wall) { return std::holds_alternative<geometry::Arc>(wall.curve); });
   EXPECT_GT(round, 20);

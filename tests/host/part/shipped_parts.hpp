@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <map>
+#include <stdexcept>
 #include <string>
 
 #include "host/part/part.hpp"
@@ -16,6 +18,16 @@ inline model::PartSource source_of(const std::filesystem::path& file) {
   source.file = file;
   source.density_g_cm3 = 2.81;
   return source;
+}
+
+/// A shipped part with the default source, read once in a test run.
+inline const Part& shipped_part(const std::string& name) {
+  static std::map<std::string, Part> parts;
+  const auto found = parts.find(name);
+  if (found != parts.end()) return found->second;
+  auto part = read_part(source_of(shipped(name)));
+  if (!part) throw std::runtime_error(part.error().message);
+  return parts.emplace(name, std::move(*part)).first->second;
 }
 
 /// Volume enclosed by the surface's triangles.

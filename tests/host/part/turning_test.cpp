@@ -40,7 +40,7 @@ TEST(Up, must_have_a_direction) {
 }
 
 TEST(Up, turns_surface_edges_and_centroid_together) {
-  const auto plain = read_part(source_of(shipped("l_bracket")));
+  const Part* plain = &shipped_part("l_bracket");
   model::PartSource source = source_of(shipped("l_bracket"));
   source.up = {1, 2, 3};
   const auto part = read_part(source);
@@ -57,8 +57,7 @@ TEST(Up, turns_surface_edges_and_centroid_together) {
 }
 
 TEST(Side, above_changes_the_signs_of_x_and_z) {
-  const auto part = read_part(source_of(shipped("l_bracket")));
-  ASSERT_TRUE(part) << part.error().message;
+  const Part* part = &shipped_part("l_bracket");
   const Part above = turned(*part, model::Side::Above);
   const Vector3d flip(-1, 1, -1);
   EXPECT_EQ(above.centroid_mm, flip.asDiagonal() * part->centroid_mm);
@@ -69,16 +68,14 @@ TEST(Side, above_changes_the_signs_of_x_and_z) {
 }
 
 TEST(Side, above_twice_is_the_part_itself) {
-  const auto part = read_part(source_of(shipped("l_bracket")));
-  ASSERT_TRUE(part) << part.error().message;
+  const Part* part = &shipped_part("l_bracket");
   const Part twice = turned(turned(*part, model::Side::Above), model::Side::Above);
   EXPECT_EQ(twice.surface.mesh().vertices_mm, part->surface.mesh().vertices_mm);
   EXPECT_EQ(twice.surface.mesh().triangles, part->surface.mesh().triangles);
 }
 
 TEST(Side, below_is_the_part_itself) {
-  const auto part = read_part(source_of(shipped("l_bracket")));
-  ASSERT_TRUE(part) << part.error().message;
+  const Part* part = &shipped_part("l_bracket");
   EXPECT_EQ(turned(*part, model::Side::Below).centroid_mm, part->centroid_mm);
 }
 
