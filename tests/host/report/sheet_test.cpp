@@ -78,16 +78,20 @@ TEST_P(SheetOfKit, every_hole_and_pin_is_named) {
 }
 
 TEST_P(SheetOfKit, every_text_lies_on_the_paper_and_none_over_another) {
-  const Picture picture = sheet_picture(sheet_for(GetParam()));
-  std::vector<TextBox> boxes;
-  for (const Text& text : picture.texts) boxes.push_back(box_of(text));
-  for (std::size_t i = 0; i < boxes.size(); ++i) {
-    EXPECT_GT(boxes[i].least_mm.minCoeff(), 5) << picture.texts[i].words;
-    EXPECT_LT(boxes[i].most_mm.x(), picture.paper.width_mm - 5) << picture.texts[i].words;
-    EXPECT_LT(boxes[i].most_mm.y(), picture.paper.height_mm - 5) << picture.texts[i].words;
-    for (std::size_t j = 0; j < i; ++j) {
-      EXPECT_FALSE(overlap(boxes[i], boxes[j]))
-          << picture.texts[i].words << " over " << picture.texts[j].words;
+  Sheet sheet = sheet_for(GetParam());
+  for (const double separation_mm : {sheet.design.jaw_separation_mm, 59.0}) {
+    sheet.design.jaw_separation_mm = separation_mm;
+    const Picture picture = sheet_picture(sheet);
+    std::vector<TextBox> boxes;
+    for (const Text& text : picture.texts) boxes.push_back(box_of(text));
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      EXPECT_GT(boxes[i].least_mm.minCoeff(), 5) << picture.texts[i].words;
+      EXPECT_LT(boxes[i].most_mm.x(), picture.paper.width_mm - 5) << picture.texts[i].words;
+      EXPECT_LT(boxes[i].most_mm.y(), picture.paper.height_mm - 5) << picture.texts[i].words;
+      for (std::size_t j = 0; j < i; ++j) {
+        EXPECT_FALSE(overlap(boxes[i], boxes[j]))
+            << picture.texts[i].words << " over " << picture.texts[j].words;
+      }
     }
   }
 }
