@@ -77,6 +77,8 @@ class Client::Implementation {
     if constexpr (requires { jaw(1).view.take(r); }) jaw(r.label.node).view.take(r);
   }
 
+  /// A changed permission is said with the next step.
+  void beat_soon() { heartbeat_.next_us = now_us_; }
   [[nodiscard]] std::int64_t now_us() const { return now_us_; }
   [[nodiscard]] std::uint16_t epoch() const { return settings_.epoch; }
   [[nodiscard]] bool other_host() const {
@@ -181,7 +183,9 @@ bool Client::alive(std::uint8_t node) const {
 void Client::permit(std::uint8_t node, bool allowed) {
   const auto bit = static_cast<std::uint16_t>(1U << (node - 1U));
   std::uint16_t& permit = implementation_->heartbeat.permit;
-  permit = static_cast<std::uint16_t>(allowed ? permit | bit : permit & ~bit);
+  const auto wanted = static_cast<std::uint16_t>(allowed ? permit | bit : permit & ~bit);
+  if (wanted != permit) implementation_->beat_soon();
+  permit = wanted;
 }
 void Client::set_state(wire::HostState state) {
   implementation_->heartbeat.state = state;
@@ -193,7 +197,10 @@ void Client::send_layout(std::uint8_t node, const wire::Layout& layout) {
 
 void Client::arm(std::uint8_t node, std::uint32_t layout_crc) {
   const std::uint16_t epoch = implementation_->epoch();
-  implementation_->order(node, {.command = wire::arm_command(layout_crc, epoch), .needs_host_heard = true});
+  const bool healthy = !this->node(node).state || this->node(node).state->fault == wire::FaultCode::None;
+  implementation_->order(node, {.command = wire::arm_command(layout_crc, epoch),
+                                .needs_host_heard = true,
+                                .leaves_loaded = healthy && implementation_->heartbeat.permits(node)});
 }
 void Client::disarm(std::uint8_t node) {
   implementation_->order(node, {.command = wire::plain_command(wire::Op::Disarm)});

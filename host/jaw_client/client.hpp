@@ -47,7 +47,8 @@ class Client {
 
   /// WRITE, COMMIT and READBACK compared byte by byte. Ends with the layout committed and the session closed.
   void send_layout(std::uint8_t node, const wire::Layout& layout);
-  /// Waits until the node hears this host, then opens a session for the layout with this CRC.
+  /// Waits until the node hears this host, then opens a session for the layout with this CRC; where the node
+  /// may move, until it has left LOADED.
   void arm(std::uint8_t node, std::uint32_t layout_crc);
   void disarm(std::uint8_t node);
   /// Closes by light force on a part that a person holds (needs the local enable); done in SEATED.

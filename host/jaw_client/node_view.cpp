@@ -36,7 +36,14 @@ void NodeView::take(const wire::Received<wire::FaultReport>& received) {
   if (!in_order(wire::MessageType::Fault, received.label.counter)) return;
   const wire::FaultReport& report = received.message;
   std::erase_if(faults, [&report](const wire::FaultReport& known) { return known.code == report.code; });
-  if (report.active) faults.push_back(report);
+  if (report.active) {
+    faults.push_back(report);
+  } else {
+    last_note = report;
+  }
+  if (report.code == wire::FaultCode::ManualRelease && report.severity == wire::Severity::Info) {
+    challenge = report.argument;
+  }
 }
 
 void NodeView::take(const wire::Received<wire::LayoutStatus>& received) {
@@ -75,10 +82,6 @@ void NodeView::take(const wire::Received<wire::Identity>& received) {
       identity.memory = page.memory;
       break;
   }
-}
-
-void NodeView::forget_fault(wire::FaultCode code) {
-  std::erase_if(faults, [code](const wire::FaultReport& report) { return report.code == code; });
 }
 
 }  // namespace pinjaw::jaw_client

@@ -27,11 +27,13 @@ class NodeView {
   std::optional<wire::Custody> custody;
   std::optional<wire::LayoutStatus> layout;
   std::optional<wire::Pneumatics> pneumatics;
-  wire::Identity identity;                ///< pages as they came
-  std::uint8_t identity_pages = 0;        ///< bit n: page n came
-  std::vector<wire::FaultReport> faults;  ///< active ones, oldest first
-  std::uint64_t states_heard = 0;         ///< STATE frames taken
-  std::uint64_t discarded = 0;            ///< repeated or out of order
+  wire::Identity identity;                     ///< pages as they came
+  std::uint8_t identity_pages = 0;             ///< bit n: page n came
+  std::vector<wire::FaultReport> faults;       ///< active ones, oldest first
+  std::optional<wire::FaultReport> last_note;  ///< the last report of something that is already over
+  std::optional<std::uint16_t> challenge;      ///< of a MANUAL_RELEASE, waiting for its answer
+  std::uint64_t states_heard = 0;              ///< STATE frames taken
+  std::uint64_t discarded = 0;                 ///< repeated or out of order
 
   /// Each takes a checked message; repeats and jumps of the counter are discarded.
   void take(const wire::Received<wire::NodeState>& received, std::int64_t now_us);
@@ -41,9 +43,6 @@ class NodeView {
   void take(const wire::Received<wire::LayoutStatus>& received);
   void take(const wire::Received<wire::Pneumatics>& received);
   void take(const wire::Received<wire::Identity>& received);
-
-  /// Until it is reported again.
-  void forget_fault(wire::FaultCode code);
 
  private:
   bool in_order(wire::MessageType type, std::uint8_t counter);

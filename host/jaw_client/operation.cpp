@@ -82,7 +82,7 @@ void Operation::prepare(const Surroundings& around) {
                        (giver != nullptr && giver->custody && giver->custody->fact == wire::Fact::Offer &&
                         giver->custody->peer == node_);
   if (heard && offered) {
-    if (order_.asks_challenge) around.view.forget_fault(wire::FaultCode::ManualRelease);
+    if (order_.asks_challenge) around.view.challenge.reset();
     around.channel.begin(order_.command);
     return enter(Phase::Command, around.now_us);
   }
@@ -109,18 +109,28 @@ void Operation::await_answer(const Surroundings& around) {
 
 bool Operation::worth_another_try(const wire::Acknowledge& answer, std::int64_t now_us) const {
   if (now_us - begun_us_ >= kPrepare_us) return false;
+  if (answer.result == wire::CommandResult::Ok) {
+    return order_.leaves_loaded && answer.state == wire::State::Loaded;
+  }
   if (answer.result == wire::CommandResult::Busy) return true;
-  const bool offer_on_its_way =
-      answer.reason == wire::Reason::PeerNotOffering || answer.reason == wire::Reason::PeerStale;
-  return order_.offering_giver != 0 && offer_on_its_way;
+  switch (answer.reason) {
+    case wire::Reason::PeerStale:
+      return true;  // a frame or two of the peer were lost
+    case wire::Reason::PeerNotOffering:
+      return order_.offering_giver != 0;  // its OFFER is on its way
+    case wire::Reason::TwoHosts:          // the last host may have stopped just now
+    case wire::Reason::HostSilent:
+    case wire::Reason::WrongSession:  // the node still follows the last host
+      return order_.command.op == wire::Op::Arm;
+    default:
+      return false;
+  }
 }
 
 void Operation::answered(const Surroundings& around) {
   const wire::Acknowledge answer = around.channel.answer();
-  if (answer.result != wire::CommandResult::Ok) {
-    if (worth_another_try(answer, around.now_us)) return enter(Phase::Pause, around.now_us);
-    return refused(answer);
-  }
+  if (worth_another_try(answer, around.now_us)) return enter(Phase::Pause, around.now_us);
+  if (answer.result != wire::CommandResult::Ok) return refused(answer);
   if (order_.asks_challenge && !challenged_) return enter(Phase::Challenge, around.now_us);
   if (order_.goals.empty()) {
     outcome_.kind = OutcomeKind::Done;
@@ -145,10 +155,9 @@ void Operation::refused(const wire::Acknowledge& answer) {
 }
 
 void Operation::await_challenge(const Surroundings& around) {
-  const wire::FaultReport* report = around.view.fault(wire::FaultCode::ManualRelease);
-  if (report != nullptr && report->severity == wire::Severity::Info) {
+  if (around.view.challenge) {
     challenged_ = true;
-    order_.command = wire::manual_release_answer(report->argument);
+    order_.command = wire::manual_release_answer(*around.view.challenge);
     around.channel.begin(order_.command);
     return enter(Phase::Command, around.now_us);
   }

@@ -35,6 +35,7 @@ struct Order {
   std::int64_t reach_us = 10'000'000;  ///< longest from the answer to a goal
   bool needs_host_heard = false;       ///< wait until the node hears this host
   std::uint8_t offering_giver = 0;     ///< wait until this node offers to us
+  bool leaves_loaded = false;          ///< in LOADED the node has not heard the permission: say it again
   bool asks_challenge = false;         ///< then answer the challenge, and only that leads to the goals
 };
 

@@ -108,6 +108,20 @@ TEST_F(OnTheBus, arms_once_the_node_hears_it) {
   EXPECT_GE(arm.heartbeats, 3);
 }
 
+TEST_F(OnTheBus, arms_again_where_the_permission_was_not_heard) {
+  arm.arms_without_permission = 2;
+  EXPECT_TRUE(armed().done());
+  EXPECT_TRUE(client.node(kArm).in(State::Ready) || (pass(50), client.node(kArm).in(State::Ready)));
+  EXPECT_THAT(arm.commands_done, SizeIs(3));
+}
+
+TEST_F(OnTheBus, arms_without_permission_and_leaves_the_node_loaded) {
+  client.arm(kArm, kCrc);
+  EXPECT_TRUE(settled(kArm).done());
+  EXPECT_TRUE(client.node(kArm).in(State::Loaded));
+  EXPECT_THAT(arm.commands_done, SizeIs(1));
+}
+
 TEST_F(OnTheBus, cannot_arm_who_is_not_there_or_does_not_hear) {
   client.arm(9, kCrc);
   EXPECT_EQ(settled(9).kind, OutcomeKind::Silent);
@@ -193,7 +207,7 @@ TEST_F(OnTheBus, tells_a_force_refusal_from_another) {
   arm.replies[Op::Squeeze] = {CommandResult::Limit, Reason::ForceOverLimit};
   client.squeeze(kArm, {.set_dn = 1300, .permit_dn = 1500});
   EXPECT_EQ(settled(kArm).kind, OutcomeKind::ForceRefused);
-  EXPECT_EQ(client.outcome(kArm).sentence, "node 1 refused SQUEEZE in LOADED: LIMIT (FORCE_OVER_LIMIT)");
+  EXPECT_EQ(client.outcome(kArm).sentence, "node 1 refused SQUEEZE in READY: LIMIT (FORCE_OVER_LIMIT)");
   arm.replies[Op::Squeeze] = {CommandResult::BadState, Reason::WrongState};
   client.squeeze(kArm, {.set_dn = 891, .permit_dn = 1400});
   EXPECT_EQ(settled(kArm).kind, OutcomeKind::Refused);

@@ -80,7 +80,8 @@ class FakeController {
   std::map<wire::Op, std::function<void(const wire::Command&)>> effects;
   int acknowledges_to_lose = 0;
   int responses_to_lose = 0;
-  bool silent = false;  ///< sends nothing of its own accord
+  int arms_without_permission = 0;  ///< so often an ARM finds that no permission was heard
+  bool silent = false;              ///< sends nothing of its own accord
   bool deaf = false;
   wire::LayoutTarget target{.kit_id = 7, .f_hardware_dn = 1400, .f_uncertainty_dn = 120};
   bool garbles_readback = false;
@@ -131,6 +132,15 @@ class FakeController {
     (void)end_->send(wire::pack(acknowledge, {.node = node_}));
   }
 
+  void arm() {
+    gate_.open(++session_);
+    if (arms_without_permission > 0) {
+      --arms_without_permission;
+    } else if (state.state == wire::State::Loaded && last_heartbeat.permits(node_)) {
+      state.state = wire::State::Ready;
+    }
+  }
+
   wire::Acknowledge carry_out(const wire::Command& command, wire::Acknowledge acknowledge) {
     const Reply reply = replies[command.op];
     acknowledge.result = reply.result;
@@ -138,10 +148,11 @@ class FakeController {
     if (reply.result == wire::CommandResult::Ok) {
       commands_done.push_back(command);
       coming_.assign(reply.then.begin(), reply.then.end());
-      if (command.op == wire::Op::Arm) gate_.open(++session_);
+      if (command.op == wire::Op::Arm) arm();
       if (effects[command.op]) effects[command.op](command);
     }
     gate_.remember(command, acknowledge);
+    acknowledge.state = state.state;
     acknowledge.session = gate_.session();
     acknowledge.next_sequence = gate_.next_sequence();
     gate_.remember(command, acknowledge);
