@@ -35,7 +35,8 @@ double RayTest::entry_mm(const Box& box) const {
     near_mm = std::max(near_mm, std::min(at_lo_mm, at_hi_mm));
     far_mm = std::min(far_mm, std::max(at_lo_mm, at_hi_mm));
   }
-  return near_mm <= far_mm ? near_mm : kInfinity;
+  if (near_mm > far_mm) return kInfinity;
+  return near_mm;
 }
 
 std::optional<double> RayTest::distance_mm(const Facet& facet) const {

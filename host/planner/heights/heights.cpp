@@ -71,6 +71,9 @@ double plate_top_mm(const model::Kit& kit, const geometry::Surface& part,
 }
 
 struct Heights::Impl {
+  Impl(const geometry::Surface& on, const model::PinStock& stock, double plate_mm)
+      : part(on), pins(stock), plate_top_mm(plate_mm) {}
+
   geometry::Surface part;
   model::PinStock pins;
   double plate_top_mm;

@@ -29,12 +29,13 @@ double sign_of_outwards(JawSide jaw) {
 Path::Path(const PlanarFixture& fixture, std::span<const PinToLoad> pins, const model::Kit& kit,
            const Surroundings& surroundings, const LoadingOptions& options)
     : kit_(kit), surroundings_(surroundings), options_(options), blocked_mm_(kInfinity) {
-  const Vector2d x_P = geometry::direction(-fixture.theta_rad);
+  const Vector2d closing_P = geometry::direction(-fixture.theta_rad);
   for (const PinToLoad& pin : pins) {
     const PlanarPin& planar = fixture.pins[pin.pin];
     pins_.push_back({.closed_mm = planar.p_PFoot_mm - kit.pins.radius_mm * planar.n_P,
-                     .outwards = sign_of_outwards(planar.hole.jaw) * x_P,
-                     .top_mm = options.sweeps == SweepHeights::Infinite ? kInfinity : pin.top_mm});
+                     .outwards = sign_of_outwards(planar.hole.jaw) * closing_P,
+                     .top_mm = pin.top_mm});
+    if (options.sweeps == SweepHeights::Infinite) pins_.back().top_mm = kInfinity;
     if (std::find(jaws_.begin(), jaws_.end(), planar.hole.jaw) == jaws_.end())
       jaws_.push_back(planar.hole.jaw);
   }
