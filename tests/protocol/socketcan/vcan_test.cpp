@@ -126,6 +126,28 @@ TEST(Vcan, we_see_what_cansend_sends) {
   EXPECT_EQ(remote->frame.kind, FrameKind::Remote);
 }
 
+TEST(Vcan, canplayer_plays_the_logs_we_write) {
+  const std::vector<Frame> logged = {wire::pack(wire::Force{.f_high_dn = 891}, {.node = 2, .counter = 1}),
+                                     frame_of(0x7FF, {}),
+                                     Frame{.id = 0x12345678, .extended = true, .data = {9}},
+                                     Frame{.id = 0x123, .kind = FrameKind::Remote, .length = 0}};
+  const std::string path = ::testing::TempDir() + "canplayer." + std::to_string(::getpid()) + ".log";
+  {
+    std::ofstream log(path);
+    std::int64_t time_us = 0;
+    for (const Frame& frame : logged) log << bus::to_log_line({time_us += 1000, "vcan0", frame}) << '\n';
+  }
+  const auto bus = opened();
+  ASSERT_NE(bus, nullptr);
+  run("canplayer -I " + path);
+  for (const Frame& frame : logged) {
+    const auto received = next(*bus);
+    ASSERT_TRUE(received.has_value());
+    EXPECT_EQ(received->frame, frame);
+  }
+  std::remove(path.c_str());
+}
+
 TEST(Vcan, filters_let_no_other_and_no_extended_or_remote_frame_pass) {
   const auto bus = opened({.filters = {{0x062, 0x7FF}, {0x100, 0x7F0}}});
   ASSERT_NE(bus, nullptr);
