@@ -1,0 +1,174 @@
+#include "host/cell/join.hpp"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <numeric>
+#include <queue>
+
+namespace pinjaw::cell {
+namespace {
+
+/// Smaller score first, then the designs' places.
+bool precedes(const Choice& a, const Choice& b) {
+  if (a.score_n != b.score_n) return a.score_n < b.score_n;
+  return std::lexicographical_compare(a.stations.begin(), a.stations.end(), b.stations.begin(), b.stations.end(),
+                                      [](const Partner& x, const Partner& y) { return x.design < y.design; });
+}
+
+/// Walks the tree of handoffs, one station after another. The part's place follows once both reference stations have
+/// their designs; until then nothing is known to be out of reach.
+class Walk {
+ public:
+  explicit Walk(const JoinInput& input)
+      : stations_(*input.stations), tree_(*input.tree), partners_(*input.partners), references_(input.references),
+        chosen_(stations_.size()) {
+    known_after_ = std::max(place_of(references_.theta), place_of(references_.offset));
+  }
+
+ protected:
+  /// How many links are walked when `station` has its design.
+  [[nodiscard]] std::size_t place_of(std::size_t station) const {
+    for (std::size_t i = 0; i < tree_.links.size(); ++i) {
+      if (tree_.links[i].far == station) return i + 1;
+    }
+    return 0;
+  }
+  [[nodiscard]] const Setup& setup_of(std::size_t station, const Partner& partner) const {
+    return stations_[station].setup(partner.design, partner.stance);
+  }
+  [[nodiscard]] geometry::Pose2 part_place() const {
+    const auto& [theta, offset] = references_;
+    return part_in_handoff_frame(setup_of(theta, chosen_[theta]).hold, stations_[theta].bounds,
+                                 setup_of(offset, chosen_[offset]).hold, stations_[offset].bounds);
+  }
+  [[nodiscard]] bool can_reach(std::size_t station, const Partner& partner, const geometry::Pose2& X_HP) const {
+    return reaches(setup_of(station, partner).hold, stations_[station].bounds, X_HP);
+  }
+  /// Once the part's place is known: whether the stations chosen so far reach it.
+  [[nodiscard]] bool chosen_reach(std::size_t links_walked, const geometry::Pose2& X_HP) const {
+    if (!can_reach(tree_.root, chosen_[tree_.root], X_HP)) return false;
+    for (std::size_t i = 0; i < links_walked; ++i) {
+      if (!can_reach(tree_.links[i].far, chosen_[tree_.links[i].far], X_HP)) return false;
+    }
+    return true;
+  }
+  [[nodiscard]] const std::vector<Partner>& partners_at(std::size_t link) const {
+    return partners_[link][chosen_[tree_.links[link].near].design];
+  }
+
+  const std::vector<StationSetups>& stations_;
+  const HandoffTree& tree_;
+  const std::vector<Partners>& partners_;
+  References references_;
+  std::size_t known_after_ = 0;  ///< links to walk until the part's place is known
+  std::vector<Partner> chosen_;
+};
+
+class Counter : Walk {
+ public:
+  explicit Counter(const JoinInput& input) : Walk(input) {}
+
+  std::int64_t with_root(std::uint32_t design) {
+    chosen_[tree_.root] = {design, 0};
+    return until_known(0);
+  }
+
+ private:
+  std::int64_t until_known(std::size_t link) {
+    if (link == known_after_) {
+      const geometry::Pose2 X_HP = part_place();
+      if (!chosen_reach(link, X_HP)) return 0;
+      std::int64_t product = 1;
+      for (std::size_t i = link; i < tree_.links.size() && product > 0; ++i) {
+        const bool hangs_on_chosen = place_of(tree_.links[i].near) <= link;
+        if (hangs_on_chosen) product *= below(i, X_HP);
+      }
+      return product;
+    }
+    std::int64_t total = 0;
+    for (const Partner& partner : partners_at(link)) {
+      chosen_[tree_.links[link].far] = partner;
+      total += until_known(link + 1);
+    }
+    return total;
+  }
+
+  /// Ways to choose the far station of `link` and all stations beyond it.
+  std::int64_t below(std::size_t link, const geometry::Pose2& X_HP) {
+    const std::size_t station = tree_.links[link].far;
+    std::int64_t total = 0;
+    for (const Partner& partner : partners_at(link)) {
+      if (!can_reach(station, partner, X_HP)) continue;
+      chosen_[station] = partner;
+      std::int64_t product = 1;
+      for (std::size_t i = link + 1; i < tree_.links.size() && product > 0; ++i) {
+        if (tree_.links[i].near == station) product *= below(i, X_HP);
+      }
+      total += product;
+    }
+    return total;
+  }
+};
+
+class BestFirst : Walk {
+ public:
+  BestFirst(const JoinInput& input, std::size_t top) : Walk(input), top_(top), best_(precedes) {}
+
+  std::vector<Choice> take() {
+    const StationSetups& root = stations_[tree_.root];
+    for (std::uint32_t design = 0; design < root.size(); ++design) {
+      const double score_n = root.required_n[design];
+      if (hopeless(score_n)) break;
+      chosen_[tree_.root] = {design, 0};
+      choose(0, score_n);
+    }
+    std::vector<Choice> sorted;
+    for (; !best_.empty(); best_.pop()) sorted.push_back(best_.top());
+    std::reverse(sorted.begin(), sorted.end());
+    return sorted;
+  }
+
+ private:
+  [[nodiscard]] bool hopeless(double score_n) const { return best_.size() == top_ && score_n > best_.top().score_n; }
+
+  void choose(std::size_t link, double score_n) {
+    if (link >= known_after_ && !chosen_reach(link, part_place())) return;
+    if (link == tree_.links.size()) {
+      keep({chosen_, score_n});
+      return;
+    }
+    const StationSetups& station = stations_[tree_.links[link].far];
+    for (const Partner& partner : partners_at(link)) {
+      const double with_n = std::max(score_n, station.required_n[partner.design]);
+      if (hopeless(with_n)) break;
+      chosen_[tree_.links[link].far] = partner;
+      choose(link + 1, with_n);
+    }
+  }
+
+  void keep(const Choice& choice) {
+    if (best_.size() == top_ && !precedes(choice, best_.top())) return;
+    if (best_.size() == top_) best_.pop();
+    best_.push(choice);
+  }
+
+  std::size_t top_;
+  std::priority_queue<Choice, std::vector<Choice>, decltype(&precedes)> best_;  ///< the worst kept on top
+};
+
+}  // namespace
+
+JoinResult join(const JoinInput& input, std::size_t top) {
+  JoinResult result;
+  const std::size_t roots = (*input.stations)[input.tree->root].size();
+  std::vector<std::int64_t> counts(roots, 0);
+  tbb::parallel_for(std::size_t{0}, roots, [&](std::size_t i) {
+    counts[i] = Counter(input).with_root(static_cast<std::uint32_t>(i));
+  });
+  result.count = std::accumulate(counts.begin(), counts.end(), std::int64_t{0});
+  if (top > 0 && result.count > 0) result.best = BestFirst(input, top).take();
+  return result;
+}
+
+}  // namespace pinjaw::cell
