@@ -52,6 +52,7 @@ std::string greeting(const std::vector<node::Figures>& members, const jaw_app::O
 }
 
 ExitCode simulate(const jaw_app::Options& options) {
+  catch_signals();  // first: whoever sees the world's socket may already end us
   const auto members = jaw_app::read_members(options.controllers);
   if (!members) {
     fmt::print(stderr, "{}", base::render(members.error(), "nothing was simulated"));
@@ -63,7 +64,8 @@ ExitCode simulate(const jaw_app::Options& options) {
   }
   std::vector<std::unique_ptr<bus::Bus>> buses;
   for (const node::Figures& member : *members) {
-    auto opened = socketcan::SocketBus::open(options.interface, {.filters = jaw_app::filters_of(member.node)});
+    auto opened =
+        socketcan::SocketBus::open(options.interface, {.filters = jaw_app::filters_of(member.node)});
     if (!opened) return fail(ExitCode::Unavailable, opened.error().message);
     buses.push_back(std::move(*opened));
   }
@@ -74,7 +76,6 @@ ExitCode simulate(const jaw_app::Options& options) {
     server = std::move(*listening);
   }
   jaw_app::Program program(*members, std::move(buses), std::move(server), options);
-  catch_signals();
   fmt::print(stderr, "pinjaw-jaw: {}\n", greeting(*members, options));
   program.run(stop_requested);
   return ExitCode::Done;

@@ -65,9 +65,10 @@ tl::expected<Fault, std::string> parse_fault(std::string_view text) {
     }
     const auto value = has_value ? number(text.substr(equals + 1)) : std::nullopt;
     if (!value || *value < known.least || *value > known.most) {
-      return wrong(name + " needs a number from " + std::to_string(static_cast<int>(known.least)) + " to " +
-                   std::to_string(static_cast<int>(known.most)) + ": " + name + "=" +
-                   std::string(known.unit));
+      std::string why = name;
+      why.append(" needs a number from ").append(std::to_string(static_cast<int>(known.least)));
+      why.append(" to ").append(std::to_string(static_cast<int>(known.most)));
+      return wrong(why.append(": ").append(name).append("=").append(known.unit));
     }
     return Fault{.kind = known.kind, .value = *value};
   }

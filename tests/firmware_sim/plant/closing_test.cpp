@@ -6,8 +6,8 @@
 namespace pinjaw::plant {
 namespace {
 
-/// A plain 5/2 valve of conductance `dm3_s_bar` at 6 bar, which held the jaws open before: no regulator, no check
-/// valve, no orifices.
+/// A plain 5/2 valve of conductance `dm3_s_bar` at 6 bar, which held the jaws open before: no regulator, no
+/// check valve, no orifices.
 Stand plain_valve(double dm3_s_bar) {
   Stand stand = study_stand();
   AirParameters& air = stand.parameters.air;

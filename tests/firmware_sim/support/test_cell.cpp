@@ -16,11 +16,23 @@ std::uint16_t dn(double newtons) {
   return static_cast<std::uint16_t>(std::lround(newtons * 10));
 }
 
-wire::Layout bare_layout(const TestGrip& grip) {
+node::Figures figures_of(const TestGrip& grip) {
+  node::Figures figures;
+  figures.node = grip.node;
+  figures.passive = grip.passive;
+  figures.kit_id = kKitId;
+  figures.force_uncertainty_n = grip.passive ? 0 : kUncertainty_n;
+  figures.max_squeeze_n = grip.passive ? 0 : 140;
+  return figures;
+}
+
+}  // namespace
+
+wire::Layout bare_layout(const TestGrip& grip, std::uint16_t kit_id) {
   wire::Layout layout;
   layout.node_class = grip.passive ? wire::NodeClass::Passive : wire::NodeClass::Gripper;
   layout.passive = grip.passive;
-  layout.kit_id = kKitId;
+  layout.kit_id = kit_id;
   layout.part_id = kPartId;
   layout.grid_pitch_nm = 11112500;
   layout.pin_diameter_nm = 4762500;
@@ -45,29 +57,23 @@ wire::Layout bare_layout(const TestGrip& grip) {
   return layout;
 }
 
-std::vector<std::uint8_t> write_request(std::uint8_t transaction, const wire::EncodedLayout& blob) {
-  std::vector<std::uint8_t> message = {static_cast<std::uint8_t>(wire::Service::Write), transaction};
-  message.insert(message.end(), blob.span().begin(), blob.span().end());
+std::vector<std::uint8_t> write_request(std::uint8_t transaction, const wire::Layout& layout) {
+  const wire::EncodedLayout blob = wire::encode(layout);
+  std::vector<std::uint8_t> message;
+  message.push_back(static_cast<std::uint8_t>(wire::Service::Write));
+  message.push_back(transaction);
+  for (const std::uint8_t byte : blob.span()) message.push_back(byte);
   return message;
 }
 
-std::vector<std::uint8_t> commit_request(std::uint8_t transaction, std::uint32_t crc) {
-  std::vector<std::uint8_t> message = {static_cast<std::uint8_t>(wire::Service::Commit), transaction};
+std::vector<std::uint8_t> commit_request(std::uint8_t transaction, const wire::Layout& layout) {
+  const std::uint32_t crc = wire::layout_crc_of(layout);
+  std::vector<std::uint8_t> message;
+  message.push_back(static_cast<std::uint8_t>(wire::Service::Commit));
+  message.push_back(transaction);
   for (int i = 0; i < 4; ++i) message.push_back(static_cast<std::uint8_t>(crc >> (8 * i)));
   return message;
 }
-
-node::Figures figures_of(const TestGrip& grip) {
-  node::Figures figures;
-  figures.node = grip.node;
-  figures.passive = grip.passive;
-  figures.kit_id = kKitId;
-  figures.force_uncertainty_n = grip.passive ? 0 : kUncertainty_n;
-  figures.max_squeeze_n = grip.passive ? 0 : 140;
-  return figures;
-}
-
-}  // namespace
 
 std::vector<TestGrip> arm_pedestal_pallet() {
   return {{.node = 1, .separation_mm = 30, .needed_n = 60},
@@ -112,11 +118,11 @@ bool TestCell::run_until(const std::function<bool()>& condition, int at_most_ms)
 }
 
 wire::Layout TestCell::layout_of(const TestGrip& grip) const {
-  wire::Layout layout = bare_layout(grip);
+  wire::Layout layout = bare_layout(grip, kKitId);
   const std::uint32_t own_crc = wire::layout_crc_of(layout);
   for (const TestGrip& other : grips_) {
     if (other.node == grip.node) continue;
-    const wire::Layout other_layout = bare_layout(other);
+    const wire::Layout other_layout = bare_layout(other, kKitId);
     const std::uint32_t other_crc = wire::layout_crc_of(other_layout);
     layout.peers.at(layout.peer_count++) = {
         .node = static_cast<std::uint8_t>(other.node),
@@ -131,8 +137,7 @@ wire::Layout TestCell::layout_of(const TestGrip& grip) const {
 std::optional<wire::TransferStatus> TestCell::send_layout(const TestGrip& grip) {
   const wire::Layout layout = layout_of(grip);
   std::uint8_t transaction = 1;
-  for (const auto& message :
-       {write_request(1, wire::encode(layout)), commit_request(2, wire::layout_crc_of(layout))}) {
+  for (const auto& message : {write_request(1, layout), commit_request(2, layout)}) {
     host_->request(grip.node, message);
     if (!run_until([&] { return host_->transferred(); }, 1000)) return std::nullopt;
     const std::vector<std::uint8_t>& response = host_->heard(grip.node).response;
@@ -160,7 +165,7 @@ wire::Acknowledge TestCell::command(int node, const wire::Command& command) {
 bool TestCell::arm(int node) {
   for (const TestGrip& grip : grips_) {
     if (grip.node != node) continue;
-    const std::uint32_t crc = wire::layout_crc_of(bare_layout(grip));
+    const std::uint32_t crc = wire::layout_crc_of(bare_layout(grip, kKitId));
     return command(node, wire::arm_command(crc, 0x1234)).result == wire::CommandResult::Ok;
   }
   return false;
@@ -183,7 +188,7 @@ const bench::NodeTruth& TestCell::truth_of(int node) {
 bool TestCell::squeeze(int node) {
   for (const TestGrip& grip : grips_) {
     if (grip.node != node) continue;
-    const wire::Layout layout = bare_layout(grip);
+    const wire::Layout layout = bare_layout(grip, kKitId);
     const auto set = static_cast<std::uint16_t>(grip.passive ? 0 : layout.f_required_dn + dn(kUncertainty_n));
     return command(node, wire::squeeze_command({.set_dn = set, .permit_dn = layout.f_limit_dn})).result ==
            wire::CommandResult::Ok;

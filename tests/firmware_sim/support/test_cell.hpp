@@ -24,6 +24,13 @@ struct TestGrip {
 /// A passive station 3 and two grippers 1 and 2, all of them peers of each other.
 std::vector<TestGrip> arm_pedestal_pallet();
 
+/// The layout of a grip before peers are added.
+wire::Layout bare_layout(const TestGrip& grip, std::uint16_t kit_id);
+
+/// WRITE and COMMIT of a layout, as layout services.
+std::vector<std::uint8_t> write_request(std::uint8_t transaction, const wire::Layout& layout);
+std::vector<std::uint8_t> commit_request(std::uint8_t transaction, const wire::Layout& layout);
+
 /// Thrown out of a script when its host has been killed.
 struct HostKilled {};
 
