@@ -137,12 +137,12 @@ Interval z_of(const Solid& solid) {
 
 /// Infinite ends cut off beyond the other solid's.
 Interval finite(Interval z, const Interval& other) {
-  constexpr double kBeyondMm = 1;
+  constexpr double kBeyond_mm = 1;
   const auto end = [](double at, double fallback) { return std::isfinite(at) ? at : fallback; };
   const double low = end(other.lo, end(other.hi, end(z.hi, 0)));
   const double high = end(other.hi, end(other.lo, end(z.lo, 0)));
-  if (!std::isfinite(z.lo)) z.lo = std::min(low, end(z.hi, low)) - kBeyondMm;
-  if (!std::isfinite(z.hi)) z.hi = std::max(high, z.lo) + kBeyondMm;
+  if (!std::isfinite(z.lo)) z.lo = std::min(low, end(z.hi, low)) - kBeyond_mm;
+  if (!std::isfinite(z.hi)) z.hi = std::max(high, z.lo) + kBeyond_mm;
   return z;
 }
 

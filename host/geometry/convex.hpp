@@ -35,7 +35,8 @@ double plan_distance_mm(const Sweep& a, const Rectangle& b);
 /// way.
 Overlap overlap(const Solid& a, const Solid& b);
 
-/// Chosen: over twice what the hardest took of 800 000 random pairs, half of them within 1e-5 mm of touching (85).
+/// Chosen: over twice what the hardest took of 800 000 random pairs, half of them within 1e-5 mm of touching
+/// (85).
 inline constexpr unsigned long kOverlapIterations = 200;
 
 }  // namespace pinjaw::geometry

@@ -24,8 +24,8 @@ double RayTest::entry_mm(const Box& box) const {
   double near_mm = 0;
   double far_mm = kInfinity;
   for (int axis = 0; axis < 3; ++axis) {
-    const double lo_mm = box.lo[axis] - kTouchMm - origin_mm_[axis];
-    const double hi_mm = box.hi[axis] + kTouchMm - origin_mm_[axis];
+    const double lo_mm = box.lo[axis] - kTouch_mm - origin_mm_[axis];
+    const double hi_mm = box.hi[axis] + kTouch_mm - origin_mm_[axis];
     if (direction_[axis] == 0) {
       if (lo_mm > 0 || hi_mm < 0) return kInfinity;
       continue;

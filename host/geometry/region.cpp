@@ -9,7 +9,7 @@ namespace {
 constexpr Interval kNothing{1, 0};
 
 /// Plan length under which a piece counts as upright: its whole length is over one point.
-constexpr double kPointMm = 1e-12;
+constexpr double kPoint_mm = 1e-12;
 
 Vector2d across(const Vector2d& v) {
   return {-v.y(), v.x()};
@@ -25,7 +25,7 @@ Interval clip_to_disc(const Vector2d& a_mm, const Vector2d& d_mm, const Vector2d
                       double radius_mm) {
   const Vector2d m_mm = a_mm - center_mm;
   const double d2 = d_mm.squaredNorm();
-  if (d2 < kPointMm * kPointMm) return m_mm.norm() <= radius_mm ? Interval{0, 1} : kNothing;
+  if (d2 < kPoint_mm * kPoint_mm) return m_mm.norm() <= radius_mm ? Interval{0, 1} : kNothing;
   const double area = cross(m_mm, d_mm);
   const double chord2 = radius_mm * radius_mm * d2 - area * area;
   if (chord2 < 0) return kNothing;
@@ -65,11 +65,11 @@ bool near_line(const Box& box, const Vector2d& p_mm, const Vector2d& normal, dou
 Stadium::Stadium(const Sweep& sweep)
     : from_mm_(sweep.from_mm),
       to_mm_(sweep.to_mm),
-      radius_mm_(sweep.radius_mm + kTouchMm),
+      radius_mm_(sweep.radius_mm + kTouch_mm),
       length_mm_((sweep.to_mm - sweep.from_mm).norm()),
       along_(Vector2d::Zero()),
       across_(Vector2d::Zero()) {
-  if (length_mm_ < kPointMm) return;
+  if (length_mm_ < kPoint_mm) return;
   along_ = (to_mm_ - from_mm_) / length_mm_;
   across_ = across(along_);
 }
@@ -77,7 +77,7 @@ Stadium::Stadium(const Sweep& sweep)
 bool Stadium::may_meet(const Box& box) const {
   const auto lo = box.lo.head<2>();
   const auto hi = box.hi.head<2>();
-  if (length_mm_ < kPointMm) {
+  if (length_mm_ < kPoint_mm) {
     const Vector2d beside_mm = (lo - from_mm_).cwiseMax(from_mm_ - hi).cwiseMax(0.0);
     return beside_mm.squaredNorm() <= radius_mm_ * radius_mm_;
   }
@@ -90,7 +90,7 @@ bool Stadium::may_meet(const Box& box) const {
 Interval Stadium::clip(const Vector2d& a_mm, const Vector2d& b_mm) const {
   const Vector2d d_mm = b_mm - a_mm;
   const Interval first = clip_to_disc(a_mm, d_mm, from_mm_, radius_mm_);
-  if (length_mm_ < kPointMm) return first;
+  if (length_mm_ < kPoint_mm) return first;
   const Interval last = clip_to_disc(a_mm, d_mm, to_mm_, radius_mm_);
   Interval middle{0, 1};
   cut(middle, along_.dot(a_mm - from_mm_), along_.dot(d_mm), {0, length_mm_});
@@ -109,7 +109,7 @@ Oblong::Oblong(const Rectangle& rectangle)
     : center_mm_(rectangle.center_mm),
       along_(rectangle.direction),
       across_(across(rectangle.direction)),
-      half_mm_(rectangle.half_mm.array() + kTouchMm) {}
+      half_mm_(rectangle.half_mm.array() + kTouch_mm) {}
 
 bool Oblong::may_meet(const Box& box) const {
   const Vector2d reach_mm = along_.cwiseAbs() * half_mm_.x() + across_.cwiseAbs() * half_mm_.y();

@@ -19,7 +19,7 @@ struct Box {
   }
 };
 
-/// A convex plan region as surface queries need it: a stadium grown by kTouchMm.
+/// A convex plan region as surface queries need it: a stadium grown by kTouch_mm.
 class Stadium {
  public:
   explicit Stadium(const Sweep& sweep);
@@ -40,7 +40,7 @@ class Stadium {
   Vector2d across_;  ///< unit; zero for a disc
 };
 
-/// The same for a rectangle grown by kTouchMm.
+/// The same for a rectangle grown by kTouch_mm.
 class Oblong {
  public:
   explicit Oblong(const Rectangle& rectangle);

@@ -10,7 +10,7 @@ namespace pinjaw::geometry {
 
 /// How far outside a region still touches it. Chosen: far above rounding at 1 m, far below any mesh
 /// deflection.
-inline constexpr double kTouchMm = 1e-9;
+inline constexpr double kTouch_mm = 1e-9;
 
 /// A disc of `radius_mm` swept in plan from `from_mm` to `to_mm` (a stadium; a disc where both are equal).
 struct Sweep {
@@ -48,7 +48,7 @@ struct Hit {
 /// The part's surface with a spatial index: the one geometric primitive of the planner (DESIGN 4).
 ///
 /// Answers exactly on the triangles, in double precision: the lowest or highest z of the surface over a disc
-/// or over a swept disc, within a slab. Touching counts: regions are grown by kTouchMm so that rounding
+/// or over a swept disc, within a slab. Touching counts: regions are grown by kTouch_mm so that rounding
 /// cannot lose a touch. Immutable; copies share the index; queries may run from many threads.
 class Surface {
  public:

@@ -11,7 +11,7 @@ namespace {
 
 /// Steps of a foot's place and normal, so that one foot met twice with different rounding is one. Chosen: far
 /// under eps.
-constexpr double kFootStepMm = 1e-7;
+constexpr double kFootStep_mm = 1e-7;
 constexpr double kNormalStep = 1e-9;
 constexpr std::size_t kShards = 64;  ///< chosen: many more than threads
 
@@ -22,12 +22,12 @@ std::int64_t steps(double value, double step) {
 }
 
 Key key_of(const Foot& foot) {
-  return {steps(foot.p_PFoot_mm.x(), kFootStepMm), steps(foot.p_PFoot_mm.y(), kFootStepMm),
+  return {steps(foot.p_PFoot_mm.x(), kFootStep_mm), steps(foot.p_PFoot_mm.y(), kFootStep_mm),
           steps(foot.n_P.x(), kNormalStep), steps(foot.n_P.y(), kNormalStep)};
 }
 
 Foot foot_of(const Key& key) {
-  return {{static_cast<double>(key[0]) * kFootStepMm, static_cast<double>(key[1]) * kFootStepMm},
+  return {{static_cast<double>(key[0]) * kFootStep_mm, static_cast<double>(key[1]) * kFootStep_mm},
           {static_cast<double>(key[2]) * kNormalStep, static_cast<double>(key[3]) * kNormalStep}};
 }
 

@@ -16,9 +16,9 @@ using geometry::Sweep;
 using geometry::Vector2d;
 
 /// Slack on comparisons of heights that are sums of the same numbers in another order.
-constexpr double kRoundingMm = 1e-9;
+constexpr double kRounding_mm = 1e-9;
 /// Shorter contacts are points (DESIGN 3.1 no. 7).
-constexpr double kPointContactMm = 1e-3;
+constexpr double kPointContact_mm = 1e-3;
 
 Sweep disc(const Vector2d& center_mm, double radius_mm) {
   return {center_mm, center_mm, radius_mm};
@@ -27,29 +27,29 @@ Sweep disc(const Vector2d& center_mm, double radius_mm) {
 /// The three rays of BB 3.3: what a pin there may touch and how tall it may be.
 PinHeight probe(const Surface& part, const model::PinStock& pins, const Foot& foot) {
   const Vector2d axis_mm = foot.p_PFoot_mm - pins.radius_mm * foot.n_P;
-  const Sweep large = disc(axis_mm, pins.radius_mm + model::kEpsMm);
-  const Sweep small = disc(axis_mm, pins.radius_mm - model::kEpsMm);
+  const Sweep large = disc(axis_mm, pins.radius_mm + model::kEps_mm);
+  const Sweep small = disc(axis_mm, pins.radius_mm - model::kEps_mm);
   PinHeight pin;
   pin.contact_min_mm = part.lowest_z_mm(large);
   pin.height_max_mm = part.lowest_z_mm(small);
   // BB starts down-large eps under the ceiling, so that the ceiling itself is no contact.
-  pin.contact_max_mm = part.highest_z_mm(large, Slab{.hi_mm = pin.height_max_mm - model::kEpsMm});
+  pin.contact_max_mm = part.highest_z_mm(large, Slab{.hi_mm = pin.height_max_mm - model::kEps_mm});
   return pin;
 }
 
 /// The longest stock length up to `most_mm`; `most_mm` itself where any length can be cut.
 std::optional<double> longest_mm(const model::PinStock& pins, double most_mm) {
   if (pins.lengths_mm.empty()) return most_mm;
-  const auto above = std::upper_bound(pins.lengths_mm.begin(), pins.lengths_mm.end(), most_mm + kRoundingMm);
+  const auto above = std::upper_bound(pins.lengths_mm.begin(), pins.lengths_mm.end(), most_mm + kRounding_mm);
   if (above == pins.lengths_mm.begin()) return std::nullopt;
   return *std::prev(above);
 }
 
 model::Interval contact_z_mm(const Surface& part, const Foot& foot, double top_mm) {
-  const Sweep touch = disc(foot.p_PFoot_mm, 2 * model::kEpsMm);
+  const Sweep touch = disc(foot.p_PFoot_mm, 2 * model::kEps_mm);
   const Slab below{.hi_mm = top_mm};
   const model::Interval z{part.lowest_z_mm(touch, below), part.highest_z_mm(touch, below)};
-  if (z.length() >= kPointContactMm || z.lo > z.hi) return z;
+  if (z.length() >= kPointContact_mm || z.lo > z.hi) return z;
   const double middle_mm = std::midpoint(z.lo, z.hi);
   return {middle_mm, middle_mm};
 }
@@ -58,11 +58,11 @@ model::Interval contact_z_mm(const Surface& part, const Foot& foot, double top_m
 
 PinHeightOutcome pin_height(const Surface& part, const model::PinStock& pins, double plate_top_mm,
                             const Foot& foot) {
-  const auto edge = part.lowest_above(foot.p_PFoot_mm + model::kEpsMm * foot.n_P);
+  const auto edge = part.lowest_above(foot.p_PFoot_mm + model::kEps_mm * foot.n_P);
   if (!edge) return tl::unexpected(HeightLoss::NoSurfaceAtFoot);
   PinHeight pin = probe(part, pins, foot);
   pin.z_edge_mm = edge->point_mm.z();
-  const double least_mm = pin.z_edge_mm + pins.min_engagement_mm - kRoundingMm;
+  const double least_mm = pin.z_edge_mm + pins.min_engagement_mm - kRounding_mm;
   const double most_mm =
       std::min(pin.contact_max_mm + pins.protrusion_mm, pin.height_max_mm - pins.clearance_mm);
   if (most_mm < least_mm) return tl::unexpected(HeightLoss::NoEngagement);

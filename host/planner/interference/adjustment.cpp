@@ -13,8 +13,8 @@ using geometry::Vector2d;
 using model::Side;
 
 constexpr double kTurn = 2 * std::numbers::pi;
-constexpr double kAngleTolerance = 1e-9;     ///< chosen: rounding of the closed forms that angles come from
-constexpr double kOffsetToleranceMm = 1e-6;  ///< the same for lengths
+constexpr double kAngleTolerance = 1e-9;      ///< chosen: rounding of the closed forms that angles come from
+constexpr double kOffsetTolerance_mm = 1e-6;  ///< the same for lengths
 
 Vector2d mirrored(const Vector2d& v) {
   return {-v.x(), v.y()};
@@ -89,8 +89,8 @@ Adjustment required_adjustment(const Hold& known_hold, const Adjustment& known, 
 }
 
 bool within(const Adjustment& adjustment, const model::Adjust& bounds) {
-  if (!holds(bounds.x_mm, adjustment.offset_mm.x(), kOffsetToleranceMm)) return false;
-  if (!holds(bounds.y_mm, adjustment.offset_mm.y(), kOffsetToleranceMm)) return false;
+  if (!holds(bounds.x_mm, adjustment.offset_mm.x(), kOffsetTolerance_mm)) return false;
+  if (!holds(bounds.y_mm, adjustment.offset_mm.y(), kOffsetTolerance_mm)) return false;
   for (const int turns : {-1, 0, 1}) {
     if (holds(bounds.theta_rad, adjustment.theta_rad + turns * kTurn, kAngleTolerance)) return true;
   }
@@ -108,8 +108,8 @@ std::optional<PairAdjustment> pair_adjustment(const Hold& giver, const model::Ad
   if (!theta) return std::nullopt;
   const double receiver_theta = *theta + give.theta_rad - receive.theta_rad;
   const Vector2d shift_mm = turned(receiver_theta, receive.t_mm) - turned(*theta, give.t_mm);
-  const auto x_mm = least_common(gives.x_mm, receives.x_mm, shift_mm.x(), kOffsetToleranceMm);
-  const auto y_mm = least_common(gives.y_mm, receives.y_mm, shift_mm.y(), kOffsetToleranceMm);
+  const auto x_mm = least_common(gives.x_mm, receives.x_mm, shift_mm.x(), kOffsetTolerance_mm);
+  const auto y_mm = least_common(gives.y_mm, receives.y_mm, shift_mm.y(), kOffsetTolerance_mm);
   if (!x_mm || !y_mm) return std::nullopt;
   Adjustment of_giver = from_below(giver.side, {*theta, {*x_mm, *y_mm}});
   of_giver.theta_rad = principal(of_giver.theta_rad);

@@ -13,8 +13,7 @@ using model::Side;
 /// From the gripper's frame to the part frame, which a gripper from above sees turned by pi about y.
 class ToPart {
  public:
-  ToPart(const geometry::Pose2& part_pose, Side side)
-      : X_PG_(part_pose.inverse()), above_(side == Side::Above) {}
+  ToPart(const geometry::Pose2& X_GP, Side side) : X_PG_(X_GP.inverse()), above_(side == Side::Above) {}
 
   [[nodiscard]] Vector2d point(const Vector2d& p_GQ_mm) const { return mirrored(X_PG_ * p_GQ_mm); }
   [[nodiscard]] Vector2d vector(const Vector2d& v_G) const { return mirrored(X_PG_.turned(v_G)); }

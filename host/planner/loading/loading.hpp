@@ -17,7 +17,7 @@ namespace pinjaw::planner {
 /// Why a fixture does not load: what stopped its least shift.
 enum class LoadingLoss {
   NoShift,    ///< no column shift brings the jaw separation into range, or the pins do not fit the plates
-  NoOpening,  ///< the jaws cannot open by kLeastOpeningMm each
+  NoOpening,  ///< the jaws cannot open by kLeastOpening_mm each
   PinSweep,   ///< a pin meets the part on its way from open to closed
   PinMeetsObstacle,    ///< a pin meets an obstacle or attached part, closing or while the open gripper comes
                        ///< along z
@@ -30,7 +30,7 @@ inline constexpr std::array kLoadingLosses{LoadingLoss::NoShift, LoadingLoss::No
 std::string_view to_string(LoadingLoss loss);
 
 /// Least travel of a jaw that counts as opening (CONTRACT: kit file, opening_mm).
-inline constexpr double kLeastOpeningMm = 1.0;
+inline constexpr double kLeastOpening_mm = 1.0;
 
 enum class SweepHeights {
   Pins,      ///< each pin sweeps as high as it stands

@@ -18,7 +18,7 @@ using model::JawSide;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// What lies on a plate touches it and does not meet it.
-constexpr double kRestingMm = 1e-6;
+constexpr double kResting_mm = 1e-6;
 
 double sign_of_outwards(JawSide jaw) {
   return jaw == JawSide::Left ? -1 : 1;
@@ -46,7 +46,7 @@ std::optional<LoadingLoss> Path::loss_at(const PlacedFixture& placed) {
   if (options_.motion == JawMotion::Closes) {
     opening_mm =
         (model::open_separation_mm(kit_.jaws, placed.jaw_separation_mm) - placed.jaw_separation_mm) / 2;
-    if (opening_mm < kLeastOpeningMm) return LoadingLoss::NoOpening;
+    if (opening_mm < kLeastOpening_mm) return LoadingLoss::NoOpening;
   }
   if (opening_mm >= blocked_mm_ || pins_meet_part(opening_mm)) {
     blocked_mm_ = std::min(blocked_mm_, opening_mm);
@@ -60,7 +60,7 @@ std::optional<LoadingLoss> Path::loss_at(const PlacedFixture& placed) {
 bool Path::pins_meet_part(double opening_mm) const {
   return std::any_of(pins_.begin(), pins_.end(), [&](const Pin& pin) {
     const Sweep sweep{pin.closed_mm, pin.closed_mm + opening_mm * pin.outwards,
-                      kit_.pins.radius_mm - model::kEpsMm};
+                      kit_.pins.radius_mm - model::kEps_mm};
     return surroundings_.part->meets(sweep, Slab{.hi_mm = pin.top_mm});
   });
 }
@@ -94,7 +94,7 @@ Rectangle Path::plate(const PlacedFixture& placed, JawSide jaw, const geometry::
 }
 
 bool Path::plates_meet_anything(const PlacedFixture& placed, double opening_mm) const {
-  const double top_mm = surroundings_.plate_top_mm - kRestingMm;
+  const double top_mm = surroundings_.plate_top_mm - kResting_mm;
   const Slab standing{surroundings_.plate_top_mm - kit_.jaws.plate_thickness_mm, top_mm};
   const Slab coming{.hi_mm = top_mm};
   return std::any_of(jaws_.begin(), jaws_.end(), [&](JawSide jaw) {

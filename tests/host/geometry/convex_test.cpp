@@ -83,18 +83,18 @@ double z_gap_mm(const Interval& a, const Interval& b) {
 /// Upright solids overlap exactly where their plans and their z ranges do: an answer that needs no iteration.
 template <class Other>
 void expect_the_closed_form(const SweptCylinder& a, const Other& b, int* undecided) {
-  constexpr double kMarginMm = 1e-5;
+  constexpr double kMargin_mm = 1e-5;
   const double plan_mm = plan_distance_mm(a.plan, b.plan);
   auto thinner = a.plan;
-  thinner.radius_mm -= kMarginMm;
+  thinner.radius_mm -= kMargin_mm;
   const double z_mm = z_gap_mm(a.z_mm, b.z_mm);
   const Overlap found = overlap(a, b);
   EXPECT_EQ(found, overlap(b, a));
   if (found == Overlap::Undecided) ++*undecided;
-  if (plan_mm > kMarginMm || z_mm > kMarginMm) {
+  if (plan_mm > kMargin_mm || z_mm > kMargin_mm) {
     EXPECT_NE(found, Overlap::Overlapping);
   }
-  if (plan_distance_mm(thinner, b.plan) == 0 && z_mm < -kMarginMm) {
+  if (plan_distance_mm(thinner, b.plan) == 0 && z_mm < -kMargin_mm) {
     EXPECT_NE(found, Overlap::Apart);
   }
 }

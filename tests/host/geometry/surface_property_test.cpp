@@ -9,7 +9,7 @@ namespace pinjaw::geometry {
 namespace {
 
 /// Slack for rounding, on a few tens of mm.
-constexpr double kRoundingMm = 1e-6;
+constexpr double kRounding_mm = 1e-6;
 
 /// Random facets, with flat, upright and zero-area ones and shared corners among them: coordinates are often
 /// whole.
@@ -53,12 +53,12 @@ TEST(SurfaceProperty, the_lowest_and_highest_z_lie_between_the_referees_brackets
       const Slab slab = random_slab(random);
       const double low = surface.lowest_z_mm(region, slab);
       const auto lowest = testing::lowest_bracket_mm(surface.mesh(), region, slab);
-      RC_ASSERT(low >= lowest.outer - kRoundingMm);
-      RC_ASSERT(low <= lowest.inner + kRoundingMm);
+      RC_ASSERT(low >= lowest.outer - kRounding_mm);
+      RC_ASSERT(low <= lowest.inner + kRounding_mm);
       const double high = surface.highest_z_mm(region, slab);
       const auto highest = testing::highest_bracket_mm(surface.mesh(), region, slab);
-      RC_ASSERT(high <= highest.outer + kRoundingMm);
-      RC_ASSERT(high >= highest.inner - kRoundingMm);
+      RC_ASSERT(high <= highest.outer + kRounding_mm);
+      RC_ASSERT(high >= highest.inner - kRounding_mm);
       RC_ASSERT(surface.meets(region, slab) == (low <= high));
     }
   });
@@ -75,8 +75,8 @@ TEST(SurfaceProperty, a_rectangle_meets_what_the_referee_finds_in_it) {
                              {random.uniform(0.1, 6), random.uniform(0.1, 6)}};
       const Slab slab = random_slab(random);
       const bool met = surface.meets(region, slab);
-      if (met) RC_ASSERT(testing::meets_rectangle(surface.mesh(), region, slab, kRoundingMm));
-      if (!met) RC_ASSERT(!testing::meets_rectangle(surface.mesh(), region, slab, -kRoundingMm));
+      if (met) RC_ASSERT(testing::meets_rectangle(surface.mesh(), region, slab, kRounding_mm));
+      if (!met) RC_ASSERT(!testing::meets_rectangle(surface.mesh(), region, slab, -kRounding_mm));
     }
   });
   EXPECT_TRUE(held);
@@ -91,8 +91,8 @@ TEST(SurfaceProperty, a_larger_region_reaches_at_least_as_far) {
     const double low = surface.lowest_z_mm(region, slab);
     const double high = surface.highest_z_mm(region, slab);
     region.radius_mm += random.uniform(0, 2);
-    RC_ASSERT(surface.lowest_z_mm(region, slab) <= low + kRoundingMm);
-    RC_ASSERT(surface.highest_z_mm(region, slab) >= high - kRoundingMm);
+    RC_ASSERT(surface.lowest_z_mm(region, slab) <= low + kRounding_mm);
+    RC_ASSERT(surface.highest_z_mm(region, slab) >= high - kRounding_mm);
   });
   EXPECT_TRUE(held);
 }
@@ -109,8 +109,8 @@ TEST(SurfaceProperty, turning_the_mesh_about_z_turns_the_answers) {
     const double here = Surface(mesh).lowest_z_mm({region.from_mm, region.to_mm, region.radius_mm});
     const double lower = Surface(turned).lowest_z_mm({moved.from_mm, moved.to_mm, region.radius_mm + 1e-6});
     const double higher = Surface(turned).lowest_z_mm({moved.from_mm, moved.to_mm, region.radius_mm - 1e-6});
-    RC_ASSERT(lower <= here + kRoundingMm);
-    RC_ASSERT(here <= higher + kRoundingMm);
+    RC_ASSERT(lower <= here + kRounding_mm);
+    RC_ASSERT(here <= higher + kRounding_mm);
   });
   EXPECT_TRUE(held);
 }

@@ -19,8 +19,8 @@ using geometry::testing::blocks;
 using geometry::testing::Bounds;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kEps = model::kEpsMm;
-constexpr double kPlateTopMm = -2;
+constexpr double kEps = model::kEps_mm;
+constexpr double kPlateTop_mm = -2;
 
 model::PinStock stock() {
   return {
@@ -48,7 +48,7 @@ const Surface& t_section() {
 }
 
 TEST(PinHeight, at_a_silhouette_the_pin_protrudes_above_the_part) {
-  const auto pin = pin_height(box(), stock(), kPlateTopMm, from_the_left(0, 10));
+  const auto pin = pin_height(box(), stock(), kPlateTop_mm, from_the_left(0, 10));
   ASSERT_TRUE(pin);
   EXPECT_EQ(pin->contact_min_mm, 0);
   EXPECT_EQ(pin->height_max_mm, kInfinity);
@@ -60,7 +60,7 @@ TEST(PinHeight, at_a_silhouette_the_pin_protrudes_above_the_part) {
 }
 
 TEST(PinHeight, under_an_overhang_the_pin_stops_a_clearance_below_it) {
-  const auto pin = pin_height(t_section(), stock(), kPlateTopMm, from_the_left(10, 10));
+  const auto pin = pin_height(t_section(), stock(), kPlateTop_mm, from_the_left(10, 10));
   ASSERT_TRUE(pin);
   EXPECT_EQ(pin->height_max_mm, 10);
   EXPECT_NEAR(pin->contact_max_mm, 10 - kEps, 1e-12) << "the ceiling itself is no contact";
@@ -69,7 +69,7 @@ TEST(PinHeight, under_an_overhang_the_pin_stops_a_clearance_below_it) {
 }
 
 TEST(PinHeight, at_the_overhangs_own_rim_the_pin_reaches_past_the_stem) {
-  const auto pin = pin_height(t_section(), stock(), kPlateTopMm, from_the_left(0, 10));
+  const auto pin = pin_height(t_section(), stock(), kPlateTop_mm, from_the_left(0, 10));
   ASSERT_TRUE(pin);
   EXPECT_EQ(pin->z_edge_mm, 10);
   EXPECT_EQ(pin->height_max_mm, kInfinity);
@@ -81,7 +81,7 @@ TEST(PinHeight, at_the_overhangs_own_rim_the_pin_reaches_past_the_stem) {
 TEST(PinHeight, a_groove_in_the_wall_does_not_end_the_contact) {
   const Surface part{blocks({{{0, 0, 0}, {20, 20, 4}}, {{3, 0, 4}, {20, 20, 6}}, {{0, 0, 6}, {20, 20, 10}}})};
   // Above the groove's floor hangs its ceiling at z = 6, but not over a pin that stands outside the wall.
-  const auto pin = pin_height(part, stock(), kPlateTopMm, from_the_left(0, 10));
+  const auto pin = pin_height(part, stock(), kPlateTop_mm, from_the_left(0, 10));
   ASSERT_TRUE(pin);
   EXPECT_EQ(pin->contact_max_mm, 10);
   expect_interval(pin->contact_z_mm, 0, 10);
@@ -94,7 +94,7 @@ TEST(PinHeight, in_a_pocket_open_below_the_ceiling_bounds_the_pin) {
                              {{5, 0, 0}, {15, 5, 10}},
                              {{5, 15, 0}, {15, 20, 10}},
                              {{5, 5, 4}, {15, 15, 10}}})};
-  const auto pin = pin_height(part, stock(), kPlateTopMm, {{15, 10}, Vector2d::UnitX()});
+  const auto pin = pin_height(part, stock(), kPlateTop_mm, {{15, 10}, Vector2d::UnitX()});
   ASSERT_TRUE(pin);
   EXPECT_EQ(pin->height_max_mm, 4);
   EXPECT_NEAR(pin->top_mm, 3.8, 1e-12);
@@ -115,7 +115,7 @@ TEST(PinHeight, a_thick_pin_touches_lower_walls_on_its_rim_without_counting_them
 TEST(PinHeight, too_low_a_ceiling_leaves_no_engagement) {
   const auto under_ceiling_mm = [](double ceiling_mm) {
     const Surface part{blocks({{{10, 0, 0}, {20, 20, ceiling_mm}}, {{0, 0, ceiling_mm}, {30, 20, 15}}})};
-    return pin_height(part, stock(), kPlateTopMm, from_the_left(10, 10));
+    return pin_height(part, stock(), kPlateTop_mm, from_the_left(10, 10));
   };
   ASSERT_FALSE(under_ceiling_mm(1.19));
   EXPECT_EQ(under_ceiling_mm(1.19).error(), HeightLoss::NoEngagement);
@@ -124,27 +124,27 @@ TEST(PinHeight, too_low_a_ceiling_leaves_no_engagement) {
 
 TEST(PinHeight, a_part_thinner_than_the_engagement_is_held_by_the_protruding_pin) {
   const Surface sheet{blocks({{{0, 0, 0}, {20, 20, 0.5}}})};
-  const auto pin = pin_height(sheet, stock(), kPlateTopMm, from_the_left(0, 10));
+  const auto pin = pin_height(sheet, stock(), kPlateTop_mm, from_the_left(0, 10));
   ASSERT_TRUE(pin);
   expect_interval(pin->contact_z_mm, 0, 0.5);
 }
 
 TEST(PinHeight, a_contact_under_a_thousandth_is_one_point) {
   const Surface foil{blocks({{{0, 0, 4}, {20, 20, 4.0008}}})};
-  const auto pin = pin_height(foil, stock(), kPlateTopMm, from_the_left(0, 10));
+  const auto pin = pin_height(foil, stock(), kPlateTop_mm, from_the_left(0, 10));
   ASSERT_TRUE(pin);
   EXPECT_EQ(pin->contact_z_mm.lo, pin->contact_z_mm.hi);
   EXPECT_NEAR(pin->contact_z_mm.lo, 4.0004, 1e-9);
 }
 
 TEST(PinHeight, a_foot_beside_the_part_has_no_surface) {
-  const auto pin = pin_height(box(), stock(), kPlateTopMm, from_the_left(-0.5, 10));
+  const auto pin = pin_height(box(), stock(), kPlateTop_mm, from_the_left(-0.5, 10));
   ASSERT_FALSE(pin);
   EXPECT_EQ(pin.error(), HeightLoss::NoSurfaceAtFoot);
 }
 
 TEST(PinHeight, a_foot_under_a_flat_face_has_no_engagement) {
-  const auto pin = pin_height(box(), stock(), kPlateTopMm, from_the_left(7, 10));
+  const auto pin = pin_height(box(), stock(), kPlateTop_mm, from_the_left(7, 10));
   ASSERT_FALSE(pin);
   EXPECT_EQ(pin.error(), HeightLoss::NoEngagement);
 }
@@ -153,7 +153,7 @@ TEST(PinHeight, the_longest_stock_length_that_fits_is_taken) {
   const auto with = [](std::vector<double> lengths_mm) {
     model::PinStock pins = stock();
     pins.lengths_mm = std::move(lengths_mm);
-    return pin_height(box(), pins, kPlateTopMm, from_the_left(0, 10));
+    return pin_height(box(), pins, kPlateTop_mm, from_the_left(0, 10));
   };
   EXPECT_EQ(with({5, 10, 13, 13.01})->length_mm, 13);
   EXPECT_EQ(with({5, 10, 13.01})->length_mm, 10);
@@ -247,9 +247,9 @@ TEST(PinHeight, agrees_with_the_closed_form_on_random_blocks) {
 }
 
 TEST(Heights, remembers_what_pin_height_finds) {
-  const Heights heights(t_section(), stock(), kPlateTopMm);
+  const Heights heights(t_section(), stock(), kPlateTop_mm);
   for (const double y_mm : {3.0, 10.0, 3.0}) {
-    const auto expected = pin_height(t_section(), stock(), kPlateTopMm, from_the_left(10, y_mm));
+    const auto expected = pin_height(t_section(), stock(), kPlateTop_mm, from_the_left(10, y_mm));
     const auto pin = heights.at(from_the_left(10, y_mm));
     ASSERT_TRUE(pin);
     EXPECT_NEAR(pin->top_mm, expected->top_mm, 1e-12);
@@ -263,7 +263,7 @@ TEST(Heights, a_foot_that_differs_by_rounding_has_the_same_height_to_the_last_bi
       geometry::TriangleMesh{{{0, -50, 0}, {0, 50, 0}, {50, 0, 37}, {0, -50, 10}, {0, 50, 10}},
                              {{0, 2, 1}, {0, 1, 4}, {0, 4, 3}},
                              {0, 1, 1}}};
-  const Heights heights(slope, stock(), kPlateTopMm);
+  const Heights heights(slope, stock(), kPlateTop_mm);
   const auto a = heights.at(from_the_left(0, 1.0 / 3));
   const auto b = heights.at(from_the_left(1e-13, 1.0 / 3 + 1e-13));
   ASSERT_TRUE(a);
@@ -272,7 +272,7 @@ TEST(Heights, a_foot_that_differs_by_rounding_has_the_same_height_to_the_last_bi
 }
 
 TEST(Heights, a_fixture_is_lost_with_its_first_pin_that_has_no_height) {
-  const Heights heights(t_section(), stock(), kPlateTopMm);
+  const Heights heights(t_section(), stock(), kPlateTop_mm);
   PlanarFixture fixture;
   for (std::size_t i = 0; i < 4; ++i) {
     fixture.pins[i].p_PFoot_mm = {i < 2 ? 10.0 : 20.0, 4.0 + 10.0 * static_cast<double>(i % 2)};
@@ -289,7 +289,7 @@ TEST(Heights, a_fixture_is_lost_with_its_first_pin_that_has_no_height) {
 }
 
 TEST(Heights, serves_many_threads_alike) {
-  const Heights heights(t_section(), stock(), kPlateTopMm);
+  const Heights heights(t_section(), stock(), kPlateTop_mm);
   const auto work = [&heights](double* sum) {
     for (int i = 0; i < 3000; ++i) {
       if (const auto pin = heights.at(from_the_left(10, 1 + (i % 700) * 0.02))) *sum += pin->top_mm;

@@ -15,7 +15,7 @@ using testing::Grip;
 using testing::kit;
 using testing::random_design;
 
-constexpr double kPartHeightMm = 40;
+constexpr double kPartHeight_mm = 40;
 constexpr double kQuarter = std::numbers::pi / 2;
 
 const model::Kit& shared_kit() {
@@ -30,8 +30,8 @@ FingerSet below(const Grip& grip, bool grips = true) {
 
 /// A gripper from above: it sees the part turned, from -40 to 0.
 FingerSet above(Grip grip) {
-  grip.part_low_mm = -kPartHeightMm;
-  return fingers_of(design_of(grip), {&shared_kit(), Side::Above, true}, -kPartHeightMm);
+  grip.part_low_mm = -kPartHeight_mm;
+  return fingers_of(design_of(grip), {&shared_kit(), Side::Above, true}, -kPartHeight_mm);
 }
 
 TEST(Fingers, from_below_stand_where_the_gripper_has_them) {
@@ -129,13 +129,13 @@ TEST(Handoff, two_grippers_from_one_side_have_their_plates_in_each_other) {
 }
 
 TEST(Handoff, a_pin_that_reaches_the_pallets_floor_is_incompatible) {
-  const Grip beside{.part_pose = {kQuarter, {0, 0}}, .top_mm = kPartHeightMm, .separation_mm = 30};
+  const Grip beside{.part_pose = {kQuarter, {0, 0}}, .top_mm = kPartHeight_mm, .separation_mm = 30};
   const auto verdict = check_handoff(below({}, false), above(beside));
   EXPECT_EQ(verdict.failed, HandoffCheck::Floor);
   EXPECT_EQ(verdict.giver.kind, FingerKind::Floor);
   EXPECT_EQ(verdict.receiver, (FingerName{FingerKind::Pin, 0}));
   Grip shorter = beside;
-  shorter.top_mm = kPartHeightMm - 0.1;
+  shorter.top_mm = kPartHeight_mm - 0.1;
   EXPECT_TRUE(compatible(below({}, false), above(shorter)));
   EXPECT_EQ(check_handoff(above(beside), below({}, false)).giver.kind, FingerKind::Pin);
 }
@@ -149,11 +149,11 @@ TEST(Handoff, a_pallet_never_opens) {
 }
 
 FingerSet random_below(base::Random& random) {
-  return fingers_of(random_design(random, 0, kPartHeightMm), {&shared_kit(), Side::Below, true}, 0);
+  return fingers_of(random_design(random, 0, kPartHeight_mm), {&shared_kit(), Side::Below, true}, 0);
 }
 FingerSet random_above(base::Random& random) {
-  return fingers_of(random_design(random, -kPartHeightMm, kPartHeightMm), {&shared_kit(), Side::Above, true},
-                    -kPartHeightMm);
+  return fingers_of(random_design(random, -kPartHeight_mm, kPartHeight_mm),
+                    {&shared_kit(), Side::Above, true}, -kPartHeight_mm);
 }
 
 TEST(HandoffLaws, the_quick_answer_is_the_full_one_and_does_not_depend_on_who_gives) {

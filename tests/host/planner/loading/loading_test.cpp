@@ -18,8 +18,8 @@ using geometry::testing::blocks;
 using geometry::testing::Bounds;
 using model::JawSide;
 
-constexpr double kPlateTopMm = -2;
-constexpr double kTopMm = 11;
+constexpr double kPlateTop_mm = -2;
+constexpr double kTop_mm = 11;
 
 model::Kit kit() {
   model::Kit kit;
@@ -54,10 +54,10 @@ PlanarFixture fixture() {
   return fixture;
 }
 
-std::vector<PinToLoad> standing(int count = 4, double top_mm = kTopMm) {
+std::vector<PinToLoad> standing(int count = 4, double top_mm = kTop_mm) {
   std::vector<PinToLoad> pins;
   for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-    pins.push_back({.pin = i, .length_mm = top_mm - kPlateTopMm, .top_mm = top_mm, .contact_z_mm = {0, 10}});
+    pins.push_back({.pin = i, .length_mm = top_mm - kPlateTop_mm, .top_mm = top_mm, .contact_z_mm = {0, 10}});
   }
   return pins;
 }
@@ -70,7 +70,7 @@ Surface part_with(std::vector<Bounds> more) {
 
 base::Expected<model::Design, LoadingLoss> load_part(const Surface& part, const model::Kit& on,
                                                      const LoadingOptions& options = {}) {
-  return load(fixture(), standing(), on, {&part, {}, kPlateTopMm}, options);
+  return load(fixture(), standing(), on, {&part, {}, kPlateTop_mm}, options);
 }
 
 LoadingLoss loss_of(const Surface& part, const model::Kit& on, const LoadingOptions& options = {}) {
@@ -102,7 +102,7 @@ TEST(Loading, the_least_shift_is_taken_and_the_others_are_listed) {
   EXPECT_EQ(design->pins[0].hole, (model::Hole{JawSide::Left, 0, 1}))
       << "rows centred, the lower of two middles";
   EXPECT_EQ(design->pins[3].hole, (model::Hole{JawSide::Right, 0, 2}));
-  EXPECT_EQ(design->pins[1].top_z_mm, kTopMm);
+  EXPECT_EQ(design->pins[1].top_z_mm, kTop_mm);
   EXPECT_EQ(design->pins[1].length_mm, 13);
   EXPECT_EQ(design->pins[1].feature, 1);
   expect_pins_touch_at_their_holes(*design, kit());
@@ -121,10 +121,10 @@ TEST(Loading, a_post_in_the_way_of_a_pin_discards_and_a_shorter_travel_keeps) {
 }
 
 TEST(Loading, what_hangs_above_a_pins_top_is_in_the_way_of_infinite_pins_only) {
-  const Surface part = part_with({{{-22, -7, kTopMm + 0.01}, {-20, -3, 20}}});
+  const Surface part = part_with({{{-22, -7, kTop_mm + 0.01}, {-20, -3, 20}}});
   EXPECT_TRUE(load_part(part, kit()));
   EXPECT_EQ(loss_of(part, kit(), {.sweeps = SweepHeights::Infinite}), LoadingLoss::PinSweep);
-  const Surface lower = part_with({{{-22, -7, kTopMm - 0.01}, {-20, -3, 20}}});
+  const Surface lower = part_with({{{-22, -7, kTop_mm - 0.01}, {-20, -3, 20}}});
   EXPECT_EQ(loss_of(lower, kit()), LoadingLoss::PinSweep);
 }
 
@@ -136,7 +136,7 @@ TEST(Loading, a_flange_over_the_closed_pins_stops_infinite_pins) {
 
 TEST(Loading, a_pin_may_slide_along_a_wall_that_it_just_touches) {
   EXPECT_TRUE(load_part(part_with({{{-40, 7.5, 0}, {-10, 20, 10}}}), kit()));
-  EXPECT_EQ(loss_of(part_with({{{-40, 7.5 - 1.5 * model::kEpsMm, 0}, {-10, 20, 10}}}), kit()),
+  EXPECT_EQ(loss_of(part_with({{{-40, 7.5 - 1.5 * model::kEps_mm, 0}, {-10, 20, 10}}}), kit()),
             LoadingLoss::PinSweep);
 }
 
@@ -169,7 +169,7 @@ class LoadingBeside : public ::testing::Test {
                                                     const LoadingOptions& options = {}) {
     const std::vector<Surface> others{Surface{blocks({obstacle})}};
     return load(fixture(), standing(options.motion == JawMotion::None ? 2 : 4), kit_,
-                {&part_, others, kPlateTopMm}, options);
+                {&part_, others, kPlateTop_mm}, options);
   }
   model::Kit kit_ = kit();
   Surface part_ = part_with({});
@@ -190,8 +190,8 @@ TEST_F(LoadingBeside, an_obstacle_under_the_closed_pins_alone_does_not) {
 TEST_F(LoadingBeside, obstacles_keep_the_kits_clearance_to_pins) {
   EXPECT_FALSE(beside({{-20, -2.4, 0}, {-18, -2.0, 5}})) << "0.1 from the path";
   EXPECT_TRUE(beside({{-20, -2.29, 0}, {-18, -2.0, 5}})) << "0.21 from it";
-  EXPECT_FALSE(beside({{-20, -6, kTopMm + 0.1}, {-18, -4, 20}}));
-  EXPECT_TRUE(beside({{-20, -6, kTopMm + 0.21}, {-18, -4, 20}}));
+  EXPECT_FALSE(beside({{-20, -6, kTop_mm + 0.1}, {-18, -4, 20}}));
+  EXPECT_TRUE(beside({{-20, -6, kTop_mm + 0.21}, {-18, -4, 20}}));
 }
 
 TEST_F(LoadingBeside, another_shift_may_keep_a_plate_clear_of_an_obstacle) {
@@ -207,7 +207,7 @@ TEST_F(LoadingBeside, an_obstacle_in_the_way_of_a_plate_is_told_apart) {
   ASSERT_FALSE(design);
   EXPECT_EQ(design.error(), LoadingLoss::PlateMeetsObstacle);
   EXPECT_TRUE(beside({{-60, -1, -5}, {-51, 1, -3}})) << "beyond the open plate";
-  EXPECT_TRUE(beside({{-49, -1, kPlateTopMm}, {-47, 1, 5}})) << "resting on the plate";
+  EXPECT_TRUE(beside({{-49, -1, kPlateTop_mm}, {-47, 1, 5}})) << "resting on the plate";
 }
 
 TEST_F(LoadingBeside, a_pallet_neither_opens_nor_sweeps) {
@@ -242,9 +242,9 @@ TEST(LoadingLaws, turning_the_part_frame_changes_nothing) {
       p.head<2>() = geometry::Pose2{-theta_rad, Vector2d::Zero()} * Vector2d(p.head<2>());
     const Surface part{mesh};
     const Surface turned_part{turned_mesh};
-    const auto straight = load(fixture(), standing(), kit(), {&part, {}, kPlateTopMm});
+    const auto straight = load(fixture(), standing(), kit(), {&part, {}, kPlateTop_mm});
     const auto oblique =
-        load(turned(fixture(), theta_rad), standing(), kit(), {&turned_part, {}, kPlateTopMm});
+        load(turned(fixture(), theta_rad), standing(), kit(), {&turned_part, {}, kPlateTop_mm});
     ASSERT_EQ(straight.has_value(), oblique.has_value()) << i;
     if (!straight) continue;
     ++loaded;
@@ -285,7 +285,7 @@ TEST(LoadingLaws, agrees_with_dense_samples_of_the_way) {
     model::Kit only_one_shift = kit();
     only_one_shift.jaws.separation_mm.lo = 15;
     const auto design = load_part(part, only_one_shift);
-    const double radius_mm = 2.5 - model::kEpsMm;
+    const double radius_mm = 2.5 - model::kEps_mm;
     if (design) {
       EXPECT_FALSE(seen_in_samples(post, radius_mm - 1e-6)) << i;
     } else {
