@@ -13,9 +13,9 @@ namespace {
 
 using wire::State;
 
-constexpr std::int64_t kHeartbeat_us = wire::kHostHeartbeat_ms * 1000;
+constexpr std::int64_t kHeartbeat_us = std::int64_t{wire::kHostHeartbeat_ms} * 1000;
 constexpr std::int64_t kTime_us = 1'000'000;
-constexpr std::int64_t kHoldSpacing_us = wire::kGlobalHoldSpacing_ms * 1000;
+constexpr std::int64_t kHoldSpacing_us = std::int64_t{wire::kGlobalHoldSpacing_ms} * 1000;
 constexpr std::int64_t kOtherHost_us = 1'000'000;
 constexpr int kMostFramesAStep = 10'000;
 constexpr StateSet kFaultStates{State::FaultHold, State::FaultEmpty};

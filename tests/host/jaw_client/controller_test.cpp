@@ -125,6 +125,46 @@ TEST_F(WithControllers, hands_the_part_on_and_back) {
   EXPECT_FALSE(cell.truth().dropped);
 }
 
+/// An attempt may end anywhere, but never with the part on the floor.
+TEST_F(WithControllers, drops_no_part_on_a_bus_that_loses_doubles_and_delays) {
+  commission();
+  load_pallet();
+  const std::int64_t now_us = std::int64_t{1000} * cell.now_ms();
+  for (const bus::FaultKind kind : {bus::FaultKind::Drop, bus::FaultKind::Duplicate, bus::FaultKind::Delay}) {
+    cell.bus().add_fault({.kind = kind, .from_us = now_us, .share = 0.02, .delay_us = 5000});
+  }
+  ASSERT_TRUE(does(bench::Meet{{kPallet, kArm}}));
+  int done = 0;
+  for (int attempt = 0; attempt < 6; ++attempt) {
+    const bool at_arm = client.node(kArm).in(State::Hold);
+    const std::uint8_t giver = at_arm ? kArm : kPallet;
+    const std::uint8_t receiver = at_arm ? kPallet : kArm;
+    client.offer(giver, receiver);
+    client.accept(receiver, giver);
+    (void)settled(giver);
+    if (settled(receiver).done()) {
+      client.squeeze(receiver, forces(receiver));
+      (void)settled(receiver);
+    }
+    if (reaches(receiver, State::Hold, 3000) && reaches(giver, State::Ready, 3000)) {
+      ++done;
+      continue;
+    }
+    client.abort(giver);
+    (void)settled(giver);
+    pass(1000);
+    client.abort(receiver);
+    (void)settled(receiver);
+    pass(1000);
+    for (const std::uint8_t node : {giver, receiver}) {
+      client.arm(node, wire::layout_crc_of(layout(node)));
+      (void)settled(node);
+    }
+  }
+  EXPECT_GT(done, 0);
+  EXPECT_FALSE(std::get<bench::Truth>(cell.ask(bench::AskTruth{})).dropped);
+}
+
 TEST_F(WithControllers, is_refused_a_squeeze_over_the_limit) {
   commission();
   load_pallet();
