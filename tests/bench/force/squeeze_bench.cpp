@@ -33,7 +33,7 @@ constexpr int kCompared = 5;  // grasps that every solver does, and whose mean f
 /// One grasp's program and its loads, as every solver gets them.
 struct Case {
   Grasp grasp;
-  kernel::Program program;
+  kernel::Program program{};
   std::vector<model::Wrench> wrenches;
   std::vector<RightHandSide> right;
   int columns = 0;
@@ -147,44 +147,61 @@ double with_clp(const Case& one) {
   return sum;
 }
 
+using Tableau = Eigen::Matrix<double, 7, 39, Eigen::RowMajor>;
+using TableauBasis = std::array<int, 6>;
+
+Tableau start_tableau(const Case& one, const RightHandSide& b, TableauBasis& basis) {
+  Tableau t = Tableau::Zero();
+  for (int k = 0; k < 6; ++k) {
+    const auto row = static_cast<std::size_t>(k);
+    const double sign = b[row] < 0 ? -1 : 1;
+    for (int j = 0; j < one.columns; ++j) t(k, j) = sign * one.program.a[k][j];
+    t(k, 32 + k) = 1;
+    t(k, 38) = sign * b[row];
+    basis[row] = 32 + k;
+  }
+  return t;
+}
+
+/// The last row: reduced costs of the phase, artificials costing 1 in the first.
+void price(const Case& one, int phase, const TableauBasis& basis, Tableau& t) {
+  t.row(6).setZero();
+  for (int k = 0; k < 6; ++k) {
+    const int column = basis[static_cast<std::size_t>(k)];
+    const double real_cost = column < 32 ? one.program.cost[column] : 0;
+    const double artificial_cost = column < 32 ? 0 : 1;
+    t.row(6) -= (phase == 1 ? artificial_cost : real_cost) * t.row(k);
+  }
+  if (phase == 1) return;
+  for (int j = 0; j < one.columns; ++j) t(6, j) += one.program.cost[j];
+}
+
+void minimise(const Case& one, TableauBasis& basis, Tableau& t) {
+  for (int pivots = 0; pivots < 500; ++pivots) {
+    Eigen::Index entering = 0;
+    if (t.row(6).head(one.columns).minCoeff(&entering) > -1e-10) return;
+    int row = -1;
+    for (int k = 0; k < 6; ++k) {
+      if (t(k, entering) <= 1e-10) continue;
+      if (row < 0 || t(k, 38) * t(row, entering) < t(row, 38) * t(k, entering)) row = k;
+    }
+    if (row < 0) return;
+    t.row(row) /= t(row, entering);
+    for (int k = 0; k < 7; ++k) {
+      if (k != row) t.row(k) -= t(k, entering) * t.row(row);
+    }
+    basis[static_cast<std::size_t>(row)] = static_cast<int>(entering);
+  }
+}
+
 /// The honest peer: a dense two-phase tableau on Eigen's fixed sizes, largest reduced cost, from nothing for
 /// each load.
 double by_tableau(const Case& one, const RightHandSide& b) {
-  using Tableau = Eigen::Matrix<double, 7, 39, Eigen::RowMajor>;
-  Tableau t = Tableau::Zero();
-  std::array<int, 6> basis{};
-  for (int k = 0; k < 6; ++k) {
-    const double sign = b[static_cast<std::size_t>(k)] < 0 ? -1 : 1;
-    for (int j = 0; j < one.columns; ++j) t(k, j) = sign * one.program.a[k][j];
-    t(k, 32 + k) = 1;
-    t(k, 38) = sign * b[static_cast<std::size_t>(k)];
-    basis[static_cast<std::size_t>(k)] = 32 + k;
-  }
+  TableauBasis basis{};
+  Tableau t = start_tableau(one, b, basis);
   for (const int phase : {1, 2}) {
-    t.row(6).setZero();
-    for (int k = 0; k < 6; ++k) {
-      const int column = basis[static_cast<std::size_t>(k)];
-      const double cost = phase == 1 ? (column >= 32 ? 1 : 0) : (column < 32 ? one.program.cost[column] : 0);
-      t.row(6) -= cost * t.row(k);
-    }
-    if (phase == 2) {
-      for (int j = 0; j < one.columns; ++j) t(6, j) += one.program.cost[j];
-    }
-    for (int pivots = 0; pivots < 500; ++pivots) {
-      Eigen::Index entering = 0;
-      if (t.row(6).head(one.columns).minCoeff(&entering) > -1e-10) break;
-      int row = -1;
-      for (int k = 0; k < 6; ++k) {
-        if (t(k, entering) <= 1e-10) continue;
-        if (row < 0 || t(k, 38) * t(row, entering) < t(row, 38) * t(k, entering)) row = k;
-      }
-      if (row < 0) break;
-      t.row(row) /= t(row, entering);
-      for (int k = 0; k < 7; ++k) {
-        if (k != row) t.row(k) -= t(k, entering) * t.row(row);
-      }
-      basis[static_cast<std::size_t>(row)] = static_cast<int>(entering);
-    }
+    price(one, phase, basis, t);
+    minimise(one, basis, t);
     if (phase == 1 && -t(6, 38) > 1e-7) return 0;
   }
   return -t(6, 38);

@@ -29,6 +29,7 @@ Body body_of(const geometry::Surface& surface) {
 
 std::vector<std::string> names(const std::vector<model::Disturbance>& all) {
   std::vector<std::string> result;
+  result.reserve(all.size());
   for (const model::Disturbance& one : all) result.push_back(one.name);
   return result;
 }
