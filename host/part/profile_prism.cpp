@@ -58,6 +58,7 @@ TopoDS_Edge edge_of(const model::ProfileEdge& edge, const TopoDS_Vertex& from, c
 
 TopoDS_Wire wire_of(const std::vector<model::ProfileEdge>& loop) {
   std::vector<TopoDS_Vertex> corners;
+  corners.reserve(loop.size());
   for (const auto& edge : loop) corners.push_back(vertex_at(start_of(edge)));
   BRepBuilderAPI_MakeWire wire;
   for (std::size_t i = 0; i < loop.size(); ++i) {
