@@ -104,7 +104,9 @@ void World::observe() {
 void World::let_hand_go(const std::vector<Touch>& touched) {
   if (!part_.hand()) return;
   const bool pressed = std::ranges::any_of(touched, [](const Touch& t) { return !t.passive && touches(t); });
-  if (removing_ && !pressed) {
+  const bool waits = std::ranges::any_of(
+      stations_, [this](const Station& one) { return one.local_enable && touches_part(one); });
+  if (removing_ && !pressed && !waits) {
     part_.remove();
     log("part removed");
   } else if (!removing_ && !part_.holders().empty()) {

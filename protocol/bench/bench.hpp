@@ -29,8 +29,9 @@ struct Place {
   std::vector<Grasp> grasps;  ///< one per station that will ever grip this part
 };
 
-/// A hand takes hold of the part, which is gone as soon as no jaw presses on it: at once on a passive station, so
-/// let that be released first. Refused where the station does not touch it.
+/// A hand takes hold of the part, and takes it away as soon as no jaw presses on it and the local enable of
+/// the station is let go (whoever holds the button still waits for the release). Refused where the station
+/// does not touch it.
 struct Remove {
   int from = 0;
 };

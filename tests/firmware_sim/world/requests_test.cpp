@@ -82,6 +82,39 @@ TEST(World, a_hand_takes_a_part_from_the_pallet) {
   EXPECT_TRUE(done(cell.ask(bench::Place{3, grasps()})));
 }
 
+TEST(World, a_hand_waits_while_the_local_enable_is_held) {
+  TestCell cell(test::arm_pedestal_pallet());
+  cell.ask(bench::Place{3, grasps()});
+  cell.ask(bench::Enable{3, true});
+  cell.run_ms(5);
+  EXPECT_TRUE(done(cell.ask(bench::Remove{3})));
+  cell.run_ms(500);
+  EXPECT_TRUE(cell.truth_of(3).seated);
+  cell.ask(bench::Enable{3, false});
+  cell.run_ms(5);
+  EXPECT_FALSE(cell.truth().placed);
+  EXPECT_FALSE(cell.truth().dropped);
+}
+
+TEST(World, a_gripper_releases_the_part_into_a_hand) {
+  TestCell cell(test::arm_pedestal_pallet());
+  ASSERT_TRUE(cell.commission());
+  ASSERT_TRUE(cell.load(1)) << cell.event_log();
+  cell.ask(bench::Enable{1, true});
+  EXPECT_TRUE(done(cell.ask(bench::Remove{1})));
+  cell.run_ms(50);
+  EXPECT_EQ(cell.command(1, wire::manual_release_ask()).result, wire::CommandResult::Ok);
+  ASSERT_TRUE(cell.run_until([&] { return cell.host().heard(1).challenge.has_value(); }, 500));
+  EXPECT_EQ(cell.command(1, wire::manual_release_answer(*cell.host().heard(1).challenge)).result,
+            wire::CommandResult::Ok);
+  EXPECT_TRUE(cell.wait_for(1, wire::State::Ready, 2000));
+  cell.ask(bench::Enable{1, false});
+  cell.run_ms(5);
+  EXPECT_FALSE(cell.truth().placed);
+  EXPECT_FALSE(cell.truth().dropped);
+  EXPECT_EQ(cell.truth().min_holders, 1);
+}
+
 TEST(World, a_disturbance_lasts_until_the_next_and_unnamed_stations_keep_theirs) {
   TestCell cell(test::arm_pedestal_pallet());
   cell.ask(bench::Place{3, grasps()});
