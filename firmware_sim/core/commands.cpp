@@ -80,6 +80,11 @@ void take_up(State& state, const wire::Command& command) {
       state.faults.note(wire::FaultCode::ManualRelease);
       return;
     case wire::Op::ClearFault:
+      if (state.store.failed) {  // another try
+        state.store.failed = false;
+        state.store.record_waits = true;
+        state.store.layout_waits = state.layouts.committed;
+      }
       // A part without a record is the node's own from now on: it can then be offered, or released by hand.
       if (state.id == StateId::FaultHold && !has_custody(state.store.record.custody)) {
         NvmRecord record = state.store.record;

@@ -37,7 +37,7 @@ void expect_no_difference(const Station& station, const std::vector<wire::Frame>
 
 /// Stations in every state of a handoff, made once.
 const std::vector<Station>& interesting() {
-  static const std::vector<Station> kStations = [] {
+  static const std::vector<Station> made = [] {
     std::vector<Station> stations;
     Bench bench;
     bench.run(50);
@@ -67,7 +67,7 @@ const std::vector<Station>& interesting() {
     stations.push_back(bench.arm());
     return stations;
   }();
-  return kStations;
+  return made;
 }
 
 const Station& some_station() {

@@ -19,7 +19,7 @@ using enum StateId;
 
 /// The reliability figures' table 2.6, row by row: every change of state there is, and no other.
 const std::vector<Row>& specified() {
-  static const std::vector<Row> kRows = {
+  static const std::vector<Row> rows = {
       {Boot, Event::BootLoaded, Loaded},
       {Boot, Event::BootBare, Unconfigured},
       {Boot, Event::BootHeld, Recover},
@@ -87,7 +87,7 @@ const std::vector<Row>& specified() {
       {FaultEmpty, Event::CmdClearEmpty, Loaded},
       {FaultEmpty, Event::CmdAbort, Ready},
   };
-  return kRows;
+  return rows;
 }
 
 const Row* find(StateId state, Event event) {
