@@ -15,7 +15,7 @@ struct Row {
   StateId next;
 };
 
-using enum StateId;
+using enum wire::State;
 
 /// The reliability figures' table 2.6, row by row: every change of state there is, and no other.
 const std::vector<Row>& specified() {
