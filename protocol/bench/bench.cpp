@@ -10,7 +10,9 @@ namespace {
 using nlohmann::json;
 
 /// JSON has no infinity: null stands for it.
-json finite_or_null(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+json finite_or_null(double value) {
+  return std::isfinite(value) ? json(value) : json(nullptr);
+}
 
 double number_or_infinite(const json& j) {
   return j.is_null() ? std::numeric_limits<double>::infinity() : j.get<double>();
