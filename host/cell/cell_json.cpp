@@ -10,10 +10,10 @@ namespace {
 using nlohmann::ordered_json;
 
 ordered_json funnel_json(const planner::Funnel& funnel) {
-  return {{"features", funnel.features},       {"planar", funnel.planar},
-          {"heights", funnel.heights},         {"loadable", funnel.loadable},
-          {"not_wedging", funnel.not_wedging}, {"resistable", funnel.resistable},
-          {"strong", funnel.strong}};
+  return {
+      {"features", funnel.features}, {"planar", funnel.planar},           {"heights", funnel.heights},
+      {"loadable", funnel.loadable}, {"not_wedging", funnel.not_wedging}, {"resistable", funnel.resistable},
+      {"strong", funnel.strong}};
 }
 
 ordered_json design_json(const CellDesign& design) {

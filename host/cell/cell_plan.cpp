@@ -19,8 +19,8 @@ struct Planned {
   double part_low_mm = 0;
 };
 
-base::Expected<Planned> plan_station(const model::Cell& cell, const model::Station& station, const CellOptions& options,
-                                     const planner::ProgressSink& progress) {
+base::Expected<Planned> plan_station(const model::Cell& cell, const model::Station& station,
+                                     const CellOptions& options, const planner::ProgressSink& progress) {
   model::Task task = station.task;
   task.part = cell.part;
   const auto scene = planner::read_scene(task);
@@ -29,9 +29,12 @@ base::Expected<Planned> plan_station(const model::Cell& cell, const model::Stati
   all.top = 0;
   planner::ProgressSink named;
   if (progress) {
-    named = [&](const planner::Progress& at) { progress({station.name + ": " + at.phase, at.done, at.total}); };
+    named = [&](const planner::Progress& at) {
+      progress({station.name + ": " + at.phase, at.done, at.total});
+    };
   }
-  auto plan = station.grips ? planner::make_plan(task, *scene, all, named) : make_pallet_plan(task, *scene, all, named);
+  auto plan = station.grips ? planner::make_plan(task, *scene, all, named)
+                            : make_pallet_plan(task, *scene, all, named);
   if (!plan) return tl::unexpected(plan.error());
   return Planned{std::move(*plan), scene->turned.surface.z_range_mm().lo};
 }
@@ -49,8 +52,9 @@ base::Expected<std::vector<StationPair>> handoffs_of(const model::Cell& cell) {
     const auto giver = station_index(cell, handoff.giver);
     const auto receiver = station_index(cell, handoff.receiver);
     if (!giver || !receiver) {
-      return base::failure(fmt::format("cell {}: handoff [{}, {}] names a station that the cell does not have", cell.name,
-                                       handoff.giver, handoff.receiver));
+      return base::failure(
+          fmt::format("cell {}: handoff [{}, {}] names a station that the cell does not have", cell.name,
+                      handoff.giver, handoff.receiver));
     }
     handoffs.push_back({*giver, *receiver});
   }
@@ -60,13 +64,14 @@ base::Expected<std::vector<StationPair>> handoffs_of(const model::Cell& cell) {
 base::Expected<HandoffTree> tree_of(const model::Cell& cell, const References& references) {
   const auto handoffs = handoffs_of(cell);
   if (!handoffs) return tl::unexpected(handoffs.error());
-  const TreeOutcome outcome = handoff_tree(cell.stations.size(), *handoffs, {references.theta, references.offset});
+  const TreeOutcome outcome =
+      handoff_tree(cell.stations.size(), *handoffs, {references.theta, references.offset});
   if (outcome.fault == TreeFault::NotConnected) {
     return base::failure(fmt::format("cell {}: its handoffs do not connect all stations", cell.name));
   }
   if (outcome.fault == TreeFault::Cycle) {
-    return base::failure(
-        fmt::format("cell {}: its handoffs form a ring or list one twice; a part goes back the way it came", cell.name));
+    return base::failure(fmt::format(
+        "cell {}: its handoffs form a ring or list one twice; a part goes back the way it came", cell.name));
   }
   return outcome.tree;
 }
@@ -86,15 +91,16 @@ std::size_t handoffs_at(const model::Cell& cell, const std::string& name) {
 std::string id_of(const CellDesign& design) {
   std::string text;
   for (const StationDesign& station : design.stations) {
-    text += fmt::format("{} {} {} {:.6f};", station.station, station.design.id, station.design.pins.front().hole.row,
-                        station.design.jaw_separation_mm);
+    text += fmt::format("{} {} {} {:.6f};", station.station, station.design.id,
+                        station.design.pins.front().hole.row, station.design.jaw_separation_mm);
   }
   constexpr std::size_t kDigits = 8;  // as a station's design
   return base::sha256(text).substr(0, kDigits);
 }
 
 CellDesign design_of(const model::Cell& cell, const std::vector<StationPlan>& plans,
-                     const std::vector<StationSetups>& setups, const References& references, const Choice& choice) {
+                     const std::vector<StationSetups>& setups, const References& references,
+                     const Choice& choice) {
   const auto setup = [&](std::size_t i) -> const Setup& {
     return setups[i].setup(choice.stations[i].design, choice.stations[i].stance);
   };
@@ -119,7 +125,8 @@ base::Expected<CellPlan> make_cell_plan(const model::Cell& cell, const CellOptio
                                         const planner::ProgressSink& progress) {
   std::optional<tbb::global_control> limit;
   if (options.plan.threads > 0) {
-    limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(options.plan.threads));
+    limit.emplace(tbb::global_control::max_allowed_parallelism,
+                  static_cast<std::size_t>(options.plan.threads));
   }
   const References references = references_of(cell);
   const auto tree = tree_of(cell, references);
@@ -140,7 +147,9 @@ base::Expected<CellPlan> make_cell_plan(const model::Cell& cell, const CellOptio
   std::vector<Partners> partners;
   plan.pairs.resize(cell.handoffs.size());
   for (const HandoffTree::Link& link : tree->links) {
-    if (progress) progress({"pairs", static_cast<std::int64_t>(partners.size()), static_cast<std::int64_t>(tree->links.size())});
+    if (progress)
+      progress({"pairs", static_cast<std::int64_t>(partners.size()),
+                static_cast<std::int64_t>(tree->links.size())});
     partners.push_back(partners_of(setups[link.near], setups[link.far]));
     const model::Handoff& handoff = cell.handoffs[link.handoff];
     plan.pairs[link.handoff] = {handoff.giver, handoff.receiver, count(partners.back())};

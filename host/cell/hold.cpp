@@ -12,13 +12,21 @@ using geometry::Interval;
 using geometry::Pose2;
 
 constexpr double kTurn = 2 * std::numbers::pi;
-constexpr double kAngleTolerance_rad = 1e-9;   // chosen: rounding of the closed forms that angles come from
-constexpr double kOffsetTolerance_mm = 1e-6;   // the same for lengths
+constexpr double kAngleTolerance_rad = 1e-9;  // chosen: rounding of the closed forms that angles come from
+constexpr double kOffsetTolerance_mm = 1e-6;  // the same for lengths
 
-Vector2d mirrored(const Vector2d& v) { return {-v.x(), v.y()}; }
-Interval negated(const Interval& range) { return {-range.hi, -range.lo}; }
-Vector2d turned(double angle_rad, const Vector2d& v) { return Pose2{angle_rad, Vector2d::Zero()}.turned(v); }
-double nearest_to_zero(const Interval& range) { return std::clamp(0.0, range.lo, range.hi); }
+Vector2d mirrored(const Vector2d& v) {
+  return {-v.x(), v.y()};
+}
+Interval negated(const Interval& range) {
+  return {-range.hi, -range.lo};
+}
+Vector2d turned(double angle_rad, const Vector2d& v) {
+  return Pose2{angle_rad, Vector2d::Zero()}.turned(v);
+}
+double nearest_to_zero(const Interval& range) {
+  return std::clamp(0.0, range.lo, range.hi);
+}
 
 bool holds(const Interval& range, double value, double tolerance) {
   return range.lo - tolerance <= value && value <= range.hi + tolerance;
@@ -56,7 +64,8 @@ PlanHold::PlanHold(const planner::Hold& hold) : X_GP(hold.part_pose) {
   origin_P_mm = X_GP.inverse().t_mm;
 }
 
-PlanBounds::PlanBounds(model::Side station_side, const model::Adjust& bounds) : side(station_side), adjust(bounds) {
+PlanBounds::PlanBounds(model::Side station_side, const model::Adjust& bounds)
+    : side(station_side), adjust(bounds) {
   if (side == model::Side::Above) adjust = {negated(bounds.x_mm), bounds.y_mm, negated(bounds.theta_rad)};
 }
 
@@ -74,8 +83,8 @@ bool adjustable(const PlanHold& giver, const PlanBounds& gives, const PlanHold& 
     const Vector2d offset_mm = turned(theta_rad, v);
     return holds(x_mm, offset_mm.x(), kOffsetTolerance_mm) && holds(y_mm, offset_mm.y(), kOffsetTolerance_mm);
   };
-  for (const double theta_rad : {a.theta_rad.lo, a.theta_rad.hi, b.theta_rad.lo - between_rad,
-                                 b.theta_rad.hi - between_rad}) {
+  for (const double theta_rad :
+       {a.theta_rad.lo, a.theta_rad.hi, b.theta_rad.lo - between_rad, b.theta_rad.hi - between_rad}) {
     if (fits(theta_rad)) return true;
   }
   return std::ranges::any_of(border_angles(v, x_mm, y_mm), fits);
@@ -95,10 +104,11 @@ References references_of(std::span<const PlanBounds> bounds) {
   return references;
 }
 
-Pose2 part_in_handoff_frame(const PlanHold& turns_least, const PlanBounds& theta_bounds, const PlanHold& moves_least,
-                            const PlanBounds& offset_bounds) {
+Pose2 part_in_handoff_frame(const PlanHold& turns_least, const PlanBounds& theta_bounds,
+                            const PlanHold& moves_least, const PlanBounds& offset_bounds) {
   const double part_rad = nearest_to_zero(theta_bounds.adjust.theta_rad) + turns_least.X_GP.theta_rad;
-  const Vector2d origin_mm(nearest_to_zero(offset_bounds.adjust.x_mm), nearest_to_zero(offset_bounds.adjust.y_mm));
+  const Vector2d origin_mm(nearest_to_zero(offset_bounds.adjust.x_mm),
+                           nearest_to_zero(offset_bounds.adjust.y_mm));
   return {part_rad, origin_mm - turned(part_rad, moves_least.origin_P_mm)};
 }
 
@@ -113,11 +123,19 @@ planner::Adjustment adjustment_for(const PlanHold& hold, model::Side side, const
   return adjustment;
 }
 
-bool reaches(const PlanHold& hold, const PlanBounds& bounds, const Pose2& X_HP) {
-  if (!angle_in(bounds.adjust.theta_rad, X_HP.theta_rad - hold.X_GP.theta_rad)) return false;
-  const Vector2d offset_mm = X_HP * hold.origin_P_mm;
-  return holds(bounds.adjust.x_mm, offset_mm.x(), kOffsetTolerance_mm) &&
-         holds(bounds.adjust.y_mm, offset_mm.y(), kOffsetTolerance_mm);
+PartPlace::PartPlace(const Pose2& pose) : X_HP(pose), x_axis(geometry::direction(pose.theta_rad)) {}
+
+bool reaches(const PlanHold& hold, const PlanBounds& bounds, const PartPlace& place) {
+  const Vector2d& x = place.x_axis;
+  const Vector2d& p = hold.origin_P_mm;
+  const Vector2d offset_mm =
+      place.X_HP.t_mm + Vector2d(x.x() * p.x() - x.y() * p.y(), x.y() * p.x() + x.x() * p.y());
+  if (!holds(bounds.adjust.x_mm, offset_mm.x(), kOffsetTolerance_mm) ||
+      !holds(bounds.adjust.y_mm, offset_mm.y(), kOffsetTolerance_mm)) {
+    return false;
+  }
+  const bool turns_freely = bounds.adjust.theta_rad.length() >= kTurn - kAngleTolerance_rad;
+  return turns_freely || angle_in(bounds.adjust.theta_rad, place.X_HP.theta_rad - hold.X_GP.theta_rad);
 }
 
 }  // namespace pinjaw::cell

@@ -13,8 +13,9 @@ using geometry::Vector2d;
 /// A station's way of holding the part, as a gripper from below would say it: turning a gripper by pi about y
 /// mirrors x and the sense of angles, so that all stations can be compared in one plan view (DESIGN 2).
 struct PlanHold {
-  geometry::Pose2 X_GP;                      ///< part in the mirrored gripper frame
-  Vector2d origin_P_mm = Vector2d::Zero();   ///< the gripper's origin seen from the part: what all stations share
+  geometry::Pose2 X_GP;  ///< part in the mirrored gripper frame
+  Vector2d origin_P_mm =
+      Vector2d::Zero();  ///< the gripper's origin seen from the part: what all stations share
 
   PlanHold() = default;
   explicit PlanHold(const planner::Hold& hold);
@@ -29,13 +30,15 @@ struct PlanBounds {
   PlanBounds(model::Side station_side, const model::Adjust& bounds);
 };
 
-/// Whether two stations can be adjusted so that they hold the part in one place. Exact, also where both may turn and
-/// move: the offsets' difference turns with theta on a circle, which is tried where it crosses the bounds.
+/// Whether two stations can be adjusted so that they hold the part in one place. Exact, also where both may
+/// turn and move: the offsets' difference turns with theta on a circle, which is tried where it crosses the
+/// bounds.
 bool adjustable(const PlanHold& giver, const PlanBounds& gives, const PlanHold& receiver,
                 const PlanBounds& receives);
 
-/// Which stations fix where the part is in the handoff frame, so that nothing is searched: the one that may turn least
-/// and the one that may move least (the first of equals) stand at the value of their bounds nearest to 0.
+/// Which stations fix where the part is in the handoff frame, so that nothing is searched: the one that may
+/// turn least and the one that may move least (the first of equals) stand at the value of their bounds
+/// nearest to 0.
 struct References {
   std::size_t theta = 0;
   std::size_t offset = 0;
@@ -49,7 +52,15 @@ geometry::Pose2 part_in_handoff_frame(const PlanHold& turns_least, const PlanBou
 /// The adjustment that lets a station hold the part there, in the station's own terms.
 planner::Adjustment adjustment_for(const PlanHold& hold, model::Side side, const geometry::Pose2& X_HP);
 
-/// Whether that adjustment is within the station's bounds.
-bool reaches(const PlanHold& hold, const PlanBounds& bounds, const geometry::Pose2& X_HP);
+/// The part's place with its turn worked out, to be compared with many holds.
+struct PartPlace {
+  geometry::Pose2 X_HP;
+  Vector2d x_axis = Vector2d::UnitX();
+
+  explicit PartPlace(const geometry::Pose2& pose);
+};
+
+/// Whether the adjustment that `place` asks for is within the station's bounds.
+bool reaches(const PlanHold& hold, const PlanBounds& bounds, const PartPlace& place);
 
 }  // namespace pinjaw::cell

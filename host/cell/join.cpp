@@ -12,16 +12,20 @@ namespace {
 /// Smaller score first, then the designs' places.
 bool precedes(const Choice& a, const Choice& b) {
   if (a.score_n != b.score_n) return a.score_n < b.score_n;
-  return std::lexicographical_compare(a.stations.begin(), a.stations.end(), b.stations.begin(), b.stations.end(),
+  return std::lexicographical_compare(a.stations.begin(), a.stations.end(), b.stations.begin(),
+                                      b.stations.end(),
                                       [](const Partner& x, const Partner& y) { return x.design < y.design; });
 }
 
-/// Walks the tree of handoffs, one station after another. The part's place follows once both reference stations have
-/// their designs; until then nothing is known to be out of reach.
+/// Walks the tree of handoffs, one station after another. The part's place follows once both reference
+/// stations have their designs; until then nothing is known to be out of reach.
 class Walk {
  public:
   explicit Walk(const JoinInput& input)
-      : stations_(*input.stations), tree_(*input.tree), partners_(*input.partners), references_(input.references),
+      : stations_(*input.stations),
+        tree_(*input.tree),
+        partners_(*input.partners),
+        references_(input.references),
         chosen_(stations_.size()) {
     known_after_ = std::max(place_of(references_.theta), place_of(references_.offset));
   }
@@ -37,19 +41,19 @@ class Walk {
   [[nodiscard]] const Setup& setup_of(std::size_t station, const Partner& partner) const {
     return stations_[station].setup(partner.design, partner.stance);
   }
-  [[nodiscard]] geometry::Pose2 part_place() const {
+  [[nodiscard]] PartPlace part_place() const {
     const auto& [theta, offset] = references_;
-    return part_in_handoff_frame(setup_of(theta, chosen_[theta]).hold, stations_[theta].bounds,
-                                 setup_of(offset, chosen_[offset]).hold, stations_[offset].bounds);
+    return PartPlace(part_in_handoff_frame(setup_of(theta, chosen_[theta]).hold, stations_[theta].bounds,
+                                           setup_of(offset, chosen_[offset]).hold, stations_[offset].bounds));
   }
-  [[nodiscard]] bool can_reach(std::size_t station, const Partner& partner, const geometry::Pose2& X_HP) const {
-    return reaches(setup_of(station, partner).hold, stations_[station].bounds, X_HP);
+  [[nodiscard]] bool can_reach(std::size_t station, const Partner& partner, const PartPlace& place) const {
+    return reaches(setup_of(station, partner).hold, stations_[station].bounds, place);
   }
   /// Once the part's place is known: whether the stations chosen so far reach it.
-  [[nodiscard]] bool chosen_reach(std::size_t links_walked, const geometry::Pose2& X_HP) const {
-    if (!can_reach(tree_.root, chosen_[tree_.root], X_HP)) return false;
+  [[nodiscard]] bool chosen_reach(std::size_t links_walked, const PartPlace& place) const {
+    if (!can_reach(tree_.root, chosen_[tree_.root], place)) return false;
     for (std::size_t i = 0; i < links_walked; ++i) {
-      if (!can_reach(tree_.links[i].far, chosen_[tree_.links[i].far], X_HP)) return false;
+      if (!can_reach(tree_.links[i].far, chosen_[tree_.links[i].far], place)) return false;
     }
     return true;
   }
@@ -77,12 +81,12 @@ class Counter : Walk {
  private:
   std::int64_t until_known(std::size_t link) {
     if (link == known_after_) {
-      const geometry::Pose2 X_HP = part_place();
-      if (!chosen_reach(link, X_HP)) return 0;
+      const PartPlace place = part_place();
+      if (!chosen_reach(link, place)) return 0;
       std::int64_t product = 1;
       for (std::size_t i = link; i < tree_.links.size() && product > 0; ++i) {
         const bool hangs_on_chosen = place_of(tree_.links[i].near) <= link;
-        if (hangs_on_chosen) product *= below(i, X_HP);
+        if (hangs_on_chosen) product *= below(i, place);
       }
       return product;
     }
@@ -95,15 +99,21 @@ class Counter : Walk {
   }
 
   /// Ways to choose the far station of `link` and all stations beyond it.
-  std::int64_t below(std::size_t link, const geometry::Pose2& X_HP) {
+  std::int64_t below(std::size_t link, const PartPlace& place) {
     const std::size_t station = tree_.links[link].far;
+    const bool ends_here =
+        std::ranges::none_of(tree_.links, [&](const auto& other) { return other.near == station; });
     std::int64_t total = 0;
     for (const Partner& partner : partners_at(link)) {
-      if (!can_reach(station, partner, X_HP)) continue;
+      if (!can_reach(station, partner, place)) continue;
+      if (ends_here) {
+        ++total;
+        continue;
+      }
       chosen_[station] = partner;
       std::int64_t product = 1;
       for (std::size_t i = link + 1; i < tree_.links.size() && product > 0; ++i) {
-        if (tree_.links[i].near == station) product *= below(i, X_HP);
+        if (tree_.links[i].near == station) product *= below(i, place);
       }
       total += product;
     }
@@ -130,7 +140,9 @@ class BestFirst : Walk {
   }
 
  private:
-  [[nodiscard]] bool hopeless(double score_n) const { return best_.size() == top_ && score_n > best_.top().score_n; }
+  [[nodiscard]] bool hopeless(double score_n) const {
+    return best_.size() == top_ && score_n > best_.top().score_n;
+  }
 
   void choose(std::size_t link, double score_n) {
     if (link >= known_after_ && !chosen_reach(link, part_place())) return;

@@ -30,7 +30,8 @@ enum class TreeFault {
   Cycle,         ///< handoffs form a ring, or one is listed twice
 };
 
-/// Orders the handoffs from the station of most handoffs outwards, the stations in `first` as early as may be.
+/// Orders the handoffs from the station of most handoffs outwards, the stations in `first` as early as may
+/// be.
 struct TreeOutcome {
   TreeFault fault = TreeFault::None;
   HandoffTree tree;
@@ -53,12 +54,13 @@ struct JoinInput {
 };
 
 struct JoinResult {
-  std::int64_t count = 0;      ///< all choices in which every handoff is possible and one place of the part suits all
-  std::vector<Choice> best;    ///< smallest score first, then by the designs' order in their stations
+  std::int64_t count =
+      0;  ///< all choices in which every handoff is possible and one place of the part suits all
+  std::vector<Choice> best;  ///< smallest score first, then by the designs' order in their stations
 };
 
-/// Joins pairs into designs for the whole cell (BB 4.1) without holding them: counted by product where stations do not
-/// depend on each other, the best `top` by a bounded search.
+/// Joins pairs into designs for the whole cell (BB 4.1) without holding them: counted by product where
+/// stations do not depend on each other, the best `top` by a bounded search.
 JoinResult join(const JoinInput& input, std::size_t top);
 
 }  // namespace pinjaw::cell

@@ -14,7 +14,9 @@ using geometry::Interval;
 
 constexpr double kSure = 1 - 1e-9;  // chosen: what is nearer clashes in the full check too, rounding or not
 
-bool overlap(const Interval& a, const Interval& b) { return a.lo < b.hi && b.lo < a.hi; }
+bool overlap(const Interval& a, const Interval& b) {
+  return a.lo < b.hi && b.lo < a.hi;
+}
 
 /// Whether two closed pins clash: the part of the handoff's checks that no stance changes.
 bool closed_pins_clash(const planner::FingerSet& one, const planner::FingerSet& other) {
@@ -24,7 +26,8 @@ bool closed_pins_clash(const planner::FingerSet& one, const planner::FingerSet& 
     const planner::Finger& a = one.pins[static_cast<std::size_t>(i)];
     for (int k = 0; k < other.pin_count; ++k) {
       const planner::Finger& b = other.pins[static_cast<std::size_t>(k)];
-      if ((a.closed_mm - b.closed_mm).squaredNorm() < kSure * apart_mm * apart_mm && overlap(a.z_mm, b.z_mm)) {
+      if ((a.closed_mm - b.closed_mm).squaredNorm() < kSure * apart_mm * apart_mm &&
+          overlap(a.z_mm, b.z_mm)) {
         return true;
       }
     }
@@ -38,7 +41,8 @@ double farthest_mm(const PlanBounds& one, const PlanBounds& other) {
     return std::max(std::abs(a.hi - b.lo), std::abs(b.hi - a.lo));
   };
   constexpr double kRoom_mm = 1e-3;
-  return std::hypot(most(one.adjust.x_mm, other.adjust.x_mm), most(one.adjust.y_mm, other.adjust.y_mm)) + kRoom_mm;
+  return std::hypot(most(one.adjust.x_mm, other.adjust.x_mm), most(one.adjust.y_mm, other.adjust.y_mm)) +
+         kRoom_mm;
 }
 
 class PartnerSearch {

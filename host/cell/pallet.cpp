@@ -25,8 +25,8 @@ using planner::PlanarPin;
 
 using Outcome = std::variant<model::Design, HeightLoss, LoadingLoss>;
 
-/// Pin axes in the part frame, rounded to 1e-4 mm and sorted: what a pallet is known by. Equal pins agree to 1e-9 mm; the
-/// shift keeps round numbers away from where rounding changes.
+/// Pin axes in the part frame, rounded to 1e-4 mm and sorted: what a pallet is known by. Equal pins agree to
+/// 1e-9 mm; the shift keeps round numbers away from where rounding changes.
 using Axes = std::array<std::array<long long, 2>, 3>;
 
 Axes axes_of(const PalletFixture& pallet, double pin_radius_mm) {
@@ -36,7 +36,8 @@ Axes axes_of(const PalletFixture& pallet, double pin_radius_mm) {
   for (std::size_t i = 0; i < 3; ++i) {
     const PlanarPin& pin = pallet.fixture.pins[pallet.pins[i]];
     const geometry::Vector2d axis_mm = pin.p_PFoot_mm - pin_radius_mm * pin.n_P;
-    axes[i] = {std::llround(axis_mm.x() * kSteps_per_mm + kShift), std::llround(axis_mm.y() * kSteps_per_mm + kShift)};
+    axes[i] = {std::llround(axis_mm.x() * kSteps_per_mm + kShift),
+               std::llround(axis_mm.y() * kSteps_per_mm + kShift)};
   }
   std::sort(axes.begin(), axes.end());
   return axes;
@@ -59,8 +60,8 @@ Outcome design_of(const PalletFixture& pallet, const planner::Heights& heights, 
 std::string id_of(const model::Design& design) {
   std::string text = fmt::format("pallet {:.6f}", design.part_pose.theta_rad);
   for (const model::PinDesign& pin : design.pins) {
-    text += fmt::format(" {}{},{}:{}", pin.hole.jaw == model::JawSide::Left ? 'L' : 'R', pin.hole.column, pin.hole.row,
-                        pin.feature);
+    text += fmt::format(" {}{},{}:{}", pin.hole.jaw == model::JawSide::Left ? 'L' : 'R', pin.hole.column,
+                        pin.hole.row, pin.feature);
   }
   constexpr std::size_t kDigits = 8;  // as a gripper's design
   return base::sha256(text).substr(0, kDigits);
@@ -111,7 +112,8 @@ std::vector<Outcome> stand_and_load(const std::vector<PalletFixture>& pallets, c
 planner::Plan empty_plan(const model::Task& task, const planner::Scene& scene, bool loading_2d) {
   planner::Plan plan;
   plan.task = task.name;
-  plan.part = {task.part.file.string(), scene.part.sha256, task.part.up, scene.part.mass_kg, scene.part.centroid_mm};
+  plan.part = {task.part.file.string(), scene.part.sha256, task.part.up, scene.part.mass_kg,
+               scene.part.centroid_mm};
   plan.kit = task.kit;
   plan.side = task.side;
   plan.obstacles = task.obstacles;

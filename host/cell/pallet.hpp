@@ -3,8 +3,8 @@
 #include <array>
 #include <vector>
 
-#include "host/planner/planar/planar_fixture.hpp"
 #include "host/planner/plan/plan.hpp"
+#include "host/planner/planar/planar_fixture.hpp"
 
 namespace pinjaw::cell {
 
@@ -14,12 +14,14 @@ struct PalletFixture {
   std::array<std::size_t, 3> pins{};  ///< places of the three in the fixture's pins
 };
 
-/// The different pallets among planar fixtures: each set of three pins in the part frame once, the first fixture that
-/// has it standing for all (DESIGN 3.1 no. 9). 2+2 fixtures are none.
-std::vector<PalletFixture> pallets_of(const std::vector<planner::PlanarFixture>& fixtures, double pin_radius_mm);
+/// The different pallets among planar fixtures: each set of three pins in the part frame once, the first
+/// fixture that has it standing for all (DESIGN 3.1 no. 9). 2+2 fixtures are none.
+std::vector<PalletFixture> pallets_of(const std::vector<planner::PlanarFixture>& fixtures,
+                                      double pin_radius_mm);
 
-/// Phases 1 to 4 for a station that does not grip (DESIGN 3): three pins on which the part comes down along z; nothing
-/// squeezes, so the funnel's force phases equal `loadable`. Designs in the order of their planar fixtures.
+/// Phases 1 to 4 for a station that does not grip (DESIGN 3): three pins on which the part comes down along
+/// z; nothing squeezes, so the funnel's force phases equal `loadable`. Designs in the order of their planar
+/// fixtures.
 base::Expected<planner::Plan> make_pallet_plan(const model::Task& task, const planner::Scene& scene,
                                                const planner::PlanOptions& options,
                                                const planner::ProgressSink& progress);

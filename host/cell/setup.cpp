@@ -2,8 +2,8 @@
 
 namespace pinjaw::cell {
 
-StationSetups setups_of(const model::Station& station, const std::vector<model::Design>& designs, double part_low_mm,
-                        Stances stances) {
+StationSetups setups_of(const model::Station& station, const std::vector<model::Design>& designs,
+                        double part_low_mm, Stances stances) {
   const model::Kit& kit = station.task.kit;
   const planner::Holder holder{&kit, station.task.side, station.grips};
   StationSetups result;
@@ -15,8 +15,9 @@ StationSetups setups_of(const model::Station& station, const std::vector<model::
     result.required_n.push_back(station.grips ? design.squeeze.required_n : 0);
     result.first.push_back(static_cast<std::uint32_t>(result.setups.size()));
     for (const planner::Stance& stance : planner::stances_of(design, kit)) {
-      result.setups.push_back({stance, PlanHold({station.task.side, stance.part_pose}),
-                               planner::fingers_of(planner::moved(design, kit, stance), holder, part_low_mm)});
+      result.setups.push_back(
+          {stance, PlanHold({station.task.side, stance.part_pose}),
+           planner::fingers_of(planner::moved(design, kit, stance), holder, part_low_mm)});
       if (stances == Stances::OwnOnly) break;
     }
   }

@@ -24,9 +24,9 @@ struct StationSetups {
   bool grips = true;
   model::Side side = model::Side::Below;
   PlanBounds bounds;
-  std::vector<double> required_n;       ///< of each design; 0 for a pallet
-  std::vector<Setup> setups;            ///< design by design
-  std::vector<std::uint32_t> first;     ///< of each design, and one past the last
+  std::vector<double> required_n;    ///< of each design; 0 for a pallet
+  std::vector<Setup> setups;         ///< design by design
+  std::vector<std::uint32_t> first;  ///< of each design, and one past the last
   [[nodiscard]] std::size_t size() const { return required_n.size(); }
   /// The `stance`-th setup of design `index`; 0 is the design as it stands.
   [[nodiscard]] const Setup& setup(std::size_t index, std::size_t stance) const {
@@ -40,8 +40,9 @@ enum class Stances {
   All,      ///< shifted by rows and columns as well: a station of one handoff may choose
 };
 
-/// `designs`: smallest required squeeze first; `part_low_mm`: lowest z of the part turned by the station's side.
-StationSetups setups_of(const model::Station& station, const std::vector<model::Design>& designs, double part_low_mm,
-                        Stances stances);
+/// `designs`: smallest required squeeze first; `part_low_mm`: lowest z of the part turned by the station's
+/// side.
+StationSetups setups_of(const model::Station& station, const std::vector<model::Design>& designs,
+                        double part_low_mm, Stances stances);
 
 }  // namespace pinjaw::cell

@@ -35,7 +35,8 @@ TreeOutcome handoff_tree(std::size_t stations, const std::vector<StationPair>& h
   std::vector<std::size_t> reached{outcome.tree.root};
   for (std::size_t i = 0; i < reached.size(); ++i) {
     for (const std::size_t handoff : at[reached[i]]) {
-      const std::size_t other = handoffs[handoff].giver == reached[i] ? handoffs[handoff].receiver : handoffs[handoff].giver;
+      const std::size_t other =
+          handoffs[handoff].giver == reached[i] ? handoffs[handoff].receiver : handoffs[handoff].giver;
       if (other == outcome.tree.root || by[other] < handoffs.size()) continue;
       parent[other] = reached[i];
       by[other] = handoff;
@@ -53,7 +54,8 @@ TreeOutcome handoff_tree(std::size_t stations, const std::vector<StationPair>& h
   };
   for (const std::size_t station : first) visit(station);
   for (const std::size_t station : reached) visit(station);
-  for (const std::size_t station : order) outcome.tree.links.push_back({parent[station], station, by[station]});
+  for (const std::size_t station : order)
+    outcome.tree.links.push_back({parent[station], station, by[station]});
   return outcome;
 }
 

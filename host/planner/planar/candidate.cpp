@@ -7,13 +7,14 @@
 namespace pinjaw::planner::planar {
 namespace {
 
-constexpr double kLeastPush = 1e-6;          // |n_x| under this is rounding of 0 (research: known cases' value)
-constexpr double kLeastMultiplier = 1e-9;    // chosen: above rounding, far below any real margin
-constexpr double kRoughMultiplier = -0.02;   // chosen: seeds are near enough to tell this much before polishing
+constexpr double kLeastPush = 1e-6;        // |n_x| under this is rounding of 0 (research: known cases' value)
+constexpr double kLeastMultiplier = 1e-9;  // chosen: above rounding, far below any real margin
+constexpr double kRoughMultiplier =
+    -0.02;  // chosen: seeds are near enough to tell this much before polishing
 constexpr double kOverlap_mm = 1e-9;
 constexpr double kSeparationTolerance_mm = 1e-9;
 constexpr double kMarginTolerance_mm = 1e-9;
-constexpr double kRoughSpan_mm = 1.0;        // chosen: seeds of a span are good to far less
+constexpr double kRoughSpan_mm = 1.0;  // chosen: seeds of a span are good to far less
 
 geometry::Interval extent(const Candidate& candidate, bool rows, bool left) {
   double lo = 1e9;
@@ -35,8 +36,8 @@ Judge::Judge(const std::vector<ContactCurve>& curves, const std::vector<model::F
 
 std::optional<Candidate> Judge::judged(Candidate candidate) const {
   if (!fits_plates(candidate)) return std::nullopt;
-  const std::array<Touch, 4> touches{touch(candidate.pins[0]), touch(candidate.pins[1]), touch(candidate.pins[2]),
-                                     touch(candidate.pins[3])};
+  const std::array<Touch, 4> touches{touch(candidate.pins[0]), touch(candidate.pins[1]),
+                                     touch(candidate.pins[2]), touch(candidate.pins[3])};
   std::array<ContactState, 4> states;
   const auto look = [&] {
     for (std::size_t k = 0; k < 4; ++k) states[k] = contact_at(touches[k], candidate.placement);
@@ -66,11 +67,13 @@ bool Judge::fits_plates(const Candidate& candidate) const {
 bool Judge::span_in_range(const Candidate& candidate) const {
   const int room = 2 * (kit_.grid.columns - 1) - static_cast<int>(extent(candidate, false, true).length()) -
                    static_cast<int>(extent(candidate, false, false).length());
-  const double s_mm = candidate.placement.x_left_mm - candidate.placement.x_right_mm - 2 * kit_.grid.edge_offset_mm;
+  const double s_mm =
+      candidate.placement.x_left_mm - candidate.placement.x_right_mm - 2 * kit_.grid.edge_offset_mm;
   const geometry::Interval& range = kit_.jaws.separation_mm;
   for (int shift = 0; shift <= room; ++shift) {
     const double shifted_mm = s_mm - shift * kit_.grid.spacing_mm;
-    if (shifted_mm >= range.lo - kSeparationTolerance_mm && shifted_mm <= range.hi + kSeparationTolerance_mm) {
+    if (shifted_mm >= range.lo - kSeparationTolerance_mm &&
+        shifted_mm <= range.hi + kSeparationTolerance_mm) {
       return true;
     }
   }

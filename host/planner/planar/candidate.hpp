@@ -9,7 +9,8 @@
 
 namespace pinjaw::planner::planar {
 
-/// Which curve a pin touches and its hole, counted from the innermost used column of its jaw and a common row.
+/// Which curve a pin touches and its hole, counted from the innermost used column of its jaw and a common
+/// row.
 struct CandidatePin {
   int curve = 0;
   bool left = true;
@@ -27,7 +28,8 @@ struct Candidate {
 /// Decides whether candidates are planar fixtures, cheapest test first.
 class Judge {
  public:
-  Judge(const std::vector<ContactCurve>& curves, const std::vector<model::Feature>& features, const model::Kit& kit);
+  Judge(const std::vector<ContactCurve>& curves, const std::vector<model::Feature>& features,
+        const model::Kit& kit);
 
   /// `candidate` with its exact placement and margin where it is a fixture; nothing where it is none.
   [[nodiscard]] std::optional<Candidate> judged(Candidate candidate) const;

@@ -104,8 +104,8 @@ PlanarFixture fixture_of(const Candidate& candidate, const std::vector<ContactCu
     const ContactState state = contact_at(judge.touch(from), candidate.placement);
     const Vector2d q_mm = back.turned(state.lever_mm);
     PlanarPin& pin = fixture.pins[k];
-    pin.hole = {from.left ? model::JawSide::Left : model::JawSide::Right, from.column - column[from.left ? 0 : 1],
-                from.row - row};
+    pin.hole = {from.left ? model::JawSide::Left : model::JawSide::Right,
+                from.column - column[from.left ? 0 : 1], from.row - row};
     pin.feature = features[static_cast<std::size_t>(curve.feature)].id;
     pin.along_mm = judge.foot_along_mm(curve, q_mm);
     pin.foot_margin_mm = judge.foot_margin_mm(curve, q_mm);
@@ -133,11 +133,14 @@ PlanarFixture twin_of(const PlanarFixture& fixture, double spacing_mm) {
   return twin;
 }
 
-std::vector<PlanarFixture> listed_once(const std::vector<PlanarFixture>& fixtures, Twins twins, double spacing_mm) {
+std::vector<PlanarFixture> listed_once(const std::vector<PlanarFixture>& fixtures, Twins twins,
+                                       double spacing_mm) {
   std::vector<const PlanarFixture*> order;
   order.reserve(fixtures.size());
   for (const PlanarFixture& fixture : fixtures) order.push_back(&fixture);
-  const auto pattern = [](const PlanarFixture& fixture) { return std::make_tuple(fixture.split, holes(fixture)); };
+  const auto pattern = [](const PlanarFixture& fixture) {
+    return std::make_tuple(fixture.split, holes(fixture));
+  };
   std::sort(order.begin(), order.end(),
             [&](const PlanarFixture* a, const PlanarFixture* b) { return pattern(*a) < pattern(*b); });
   std::vector<PlanarFixture> kept;

@@ -16,6 +16,7 @@ PlanarFixture twin_of(const PlanarFixture& fixture, double spacing_mm);
 
 /// Sorts by split, holes, features, theta and keeps one of each pose: that with the smaller feature ids
 /// (DESIGN 3.1 no. 5). With Twins::Once also one of each pair of twins (no. 6).
-std::vector<PlanarFixture> listed_once(const std::vector<PlanarFixture>& fixtures, Twins twins, double spacing_mm);
+std::vector<PlanarFixture> listed_once(const std::vector<PlanarFixture>& fixtures, Twins twins,
+                                       double spacing_mm);
 
 }  // namespace pinjaw::planner::planar

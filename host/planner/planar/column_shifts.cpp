@@ -54,8 +54,8 @@ PlacedFixture place(const model::Kit& kit, const PlanarFixture& fixture, const C
     hole.row += row_shift;
     placed.holes[i] = hole;
   }
-  const geometry::Vector2d p_GHole_mm = model::p_GHole_mm(
-      kit.grid, {model::JawSide::Left, shift.left, row_shift}, shift.jaw_separation_mm);
+  const geometry::Vector2d p_GHole_mm =
+      model::p_GHole_mm(kit.grid, {model::JawSide::Left, shift.left, row_shift}, shift.jaw_separation_mm);
   placed.part_pose.theta_rad = fixture.theta_rad;
   placed.part_pose.t_mm = p_GHole_mm + geometry::Vector2d(fixture.x_left_mm, fixture.y_mm);
   return placed;

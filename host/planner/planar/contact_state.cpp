@@ -7,12 +7,18 @@
 namespace pinjaw::planner::planar {
 namespace {
 
-constexpr double kSolved_mm = 1e-10;     // chosen: a thousandth of the foot tolerance
-constexpr int kSteps = 12;               // Newton doubles digits a step; seeds are good to 1e-4 mm
+constexpr double kSolved_mm = 1e-10;  // chosen: a thousandth of the foot tolerance
+constexpr double kLeastMinors_mm =
+    1e-6;                   // chosen: above rounding; where all contact lines meet the part can turn
+constexpr int kSteps = 12;  // Newton doubles digits a step; seeds are good to 1e-4 mm
 constexpr double kLargestTurn_rad = 0.05;  // chosen: further away is another root, which has its own seed
 
-Vector2d turned(double c, double s, const Vector2d& v) { return {c * v.x() - s * v.y(), s * v.x() + c * v.y()}; }
-double cross(const Vector2d& u, const Vector2d& v) { return u.x() * v.y() - u.y() * v.x(); }
+Vector2d turned(double c, double s, const Vector2d& v) {
+  return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};
+}
+double cross(const Vector2d& u, const Vector2d& v) {
+  return u.x() * v.y() - u.y() * v.x();
+}
 
 template <int Count>
 bool polished(std::span<const Touch> touches, Placement& placement) {
@@ -55,8 +61,8 @@ ContactState contact_at(const Touch& touch, const Placement& placement) {
   const double c = std::cos(placement.theta_rad);
   const double s = std::sin(placement.theta_rad);
   ContactState state;
-  state.lever_mm = touch.hole_mm -
-                   Vector2d(touch.left ? placement.x_left_mm : placement.x_right_mm, placement.y_mm);
+  state.lever_mm =
+      touch.hole_mm - Vector2d(touch.left ? placement.x_left_mm : placement.x_right_mm, placement.y_mm);
   if (!curve.arc) {
     state.normal = turned(c, s, curve.normal);
     state.miss_mm = state.normal.dot(state.lever_mm) - curve.offset_mm;
@@ -107,7 +113,7 @@ std::array<double, 4> closure_multipliers(const std::array<ContactState, 4>& con
     sum += std::abs(value);
     if (std::abs(value) > std::abs(largest)) largest = value;
   }
-  if (sum == 0) return multipliers;
+  if (sum < kLeastMinors_mm) return {0, 0, 0, 0};
   for (double& value : multipliers) value /= largest < 0 ? -sum : sum;
   return multipliers;
 }

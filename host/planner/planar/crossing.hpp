@@ -19,11 +19,12 @@ inline constexpr double kThetaGap_rad = 2e-7;  // chosen: above the rounding of 
 /// How near two curves must come to be tried as crossing; the tries are polished and checked.
 inline constexpr double kNear_mm = 1e-4;  // chosen: five times the pieces' own error
 
-/// Zeros of y_p(theta) - y_q(theta) - row * spacing, all rows at once: on one overlap of two pieces the difference is a
-/// cubic, so each of its monotone parts meets each row's level at most once (research: level sets of one function).
+/// Zeros of y_p(theta) - y_q(theta) - row * spacing, all rows at once: on one overlap of two pieces the
+/// difference is a cubic, so each of its monotone parts meets each row's level at most once (research: level
+/// sets of one function).
 ///
-/// Calls try_at(theta_rad, y_mm of p's part origin, row) at least once near every crossing of the true curves, also
-/// where they nearly touch (once on either side) and where they meet at an end.
+/// Calls try_at(theta_rad, y_mm of p's part origin, row) at least once near every crossing of the true
+/// curves, also where they nearly touch (once on either side) and where they meet at an end.
 template <typename TryAt>
 class PieceCrossing {
  public:
@@ -72,7 +73,8 @@ class PieceCrossing {
   }
 
   /// The cubic over u in [0, 1], Bezier's form, against one row's level.
-  void meet_level(const Piece& p, double lo, double width, const std::array<double, 4>& bezier, int row) const {
+  void meet_level(const Piece& p, double lo, double width, const std::array<double, 4>& bezier,
+                  int row) const {
     const double level = row * spacing_mm_;
     const double k0 = bezier[0] - level;
     const double k1 = 3 * (bezier[1] - bezier[0]);

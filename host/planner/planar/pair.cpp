@@ -15,28 +15,37 @@ constexpr double kFoldNoise_mm2 = 1e-9;  // chosen: rounding of a square of some
 constexpr double kSamePoint_rad = 1e-13;
 constexpr double kLeastStretch_rad = 1e-12;
 
-double cross(const Vector2d& u, const Vector2d& v) { return u.x() * v.y() - u.y() * v.x(); }
-Vector2d left_of(const Vector2d& v) { return {-v.y(), v.x()}; }
-double angle_of(const Vector2d& v) { return std::atan2(v.y(), v.x()); }
+double cross(const Vector2d& u, const Vector2d& v) {
+  return u.x() * v.y() - u.y() * v.x();
+}
+Vector2d left_of(const Vector2d& v) {
+  return {-v.y(), v.x()};
+}
+double angle_of(const Vector2d& v) {
+  return std::atan2(v.y(), v.x());
+}
 
 struct Turn {
   double c;
   double s;
   explicit Turn(double theta_rad) : c(std::cos(theta_rad)), s(std::sin(theta_rad)) {}
   Vector2d operator*(const Vector2d& v) const { return {c * v.x() - s * v.y(), s * v.x() + c * v.y()}; }
-  [[nodiscard]] Vector2d back(const Vector2d& v) const { return {c * v.x() + s * v.y(), c * v.y() - s * v.x()}; }
+  [[nodiscard]] Vector2d back(const Vector2d& v) const {
+    return {c * v.x() + s * v.y(), c * v.y() - s * v.x()};
+  }
 };
 
 /// Point of the circle (origin, radius) on the line normal . p = level: along the tangent, either way.
-std::optional<Vector2d> on_circle_and_line(double radius_mm, const Vector2d& normal, double level_mm, int branch) {
+std::optional<Vector2d> on_circle_and_line(double radius_mm, const Vector2d& normal, double level_mm,
+                                           int branch) {
   const double square = radius_mm * radius_mm - level_mm * level_mm;
   if (square < -kFoldNoise_mm2) return std::nullopt;
   const double along_mm = square > 0 ? std::sqrt(square) : 0.0;
   return Vector2d(level_mm * normal + (branch == 0 ? along_mm : -along_mm) * left_of(normal));
 }
 
-std::optional<Vector2d> on_two_circles(double radius_mm, const Vector2d& other_center_mm, double other_radius_mm,
-                                       int branch) {
+std::optional<Vector2d> on_two_circles(double radius_mm, const Vector2d& other_center_mm,
+                                       double other_radius_mm, int branch) {
   const double gap_mm = other_center_mm.norm();
   if (gap_mm < 1e-12) return std::nullopt;
   const double level_mm =
@@ -79,7 +88,8 @@ std::optional<Vector2d> origin_at(const Pair& pair, const Turn& turn, int branch
   return Vector2d(v + *center_b - turn * b.center_mm);
 }
 
-Vector2d jaw_normal(const ContactCurve& curve, const Turn& turn, const Vector2d& o_mm, const Vector2d& pin_mm) {
+Vector2d jaw_normal(const ContactCurve& curve, const Turn& turn, const Vector2d& o_mm,
+                    const Vector2d& pin_mm) {
   if (!curve.arc) return turn * curve.normal;
   return curve.kappa / curve.rho_mm * (pin_mm - o_mm - turn * curve.center_mm);
 }
@@ -166,7 +176,8 @@ class Changes {
     const ContactCurve& other = is_a ? *pair_.b : *pair_.a;
     const Vector2d towards = is_a ? pair_.apart_mm : Vector2d(-pair_.apart_mm);
     for (const double side : {-1.0, 1.0}) {
-      const Vector2d k = towards - Vector2d(0, side * curve.rho_mm);  // the other pin from this curve's centre
+      const Vector2d k =
+          towards - Vector2d(0, side * curve.rho_mm);  // the other pin from this curve's centre
       if (!other.arc) {
         add_component(k, other.normal_rad, other.offset_mm - other.normal.dot(curve.center_mm));
         continue;

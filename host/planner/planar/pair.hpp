@@ -10,8 +10,8 @@ namespace pinjaw::planner::planar {
 /// Two pins of one jaw on two curves: pin A in the origin, pin B at `apart_mm`, seen from the left jaw.
 ///
 /// While both touch, the part has one freedom: the origin o(theta) of the part moves along a curve of the
-/// (theta, y) plane, in up to two branches where an arc takes part. Where both contact normals turn parallel the
-/// branches meet in a fold; for parallel lines and for coinciding circles the curve is a vertical line.
+/// (theta, y) plane, in up to two branches where an arc takes part. Where both contact normals turn parallel
+/// the branches meet in a fold; for parallel lines and for coinciding circles the curve is a vertical line.
 struct Pair {
   const ContactCurve* a = nullptr;
   const ContactCurve* b = nullptr;
@@ -20,8 +20,8 @@ struct Pair {
 
 /// The part while both pins of a pair touch.
 struct PairState {
-  Vector2d o_mm = Vector2d::Zero();    ///< part origin seen from pin A
-  double y_slope = 0;                  ///< dy/dtheta along the branch; not finite at a fold
+  Vector2d o_mm = Vector2d::Zero();      ///< part origin seen from pin A
+  double y_slope = 0;                    ///< dy/dtheta along the branch; not finite at a fold
   Vector2d normal_a = Vector2d::Zero();  ///< outward normals in the jaw frame
   Vector2d normal_b = Vector2d::Zero();
 };

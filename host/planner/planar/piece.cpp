@@ -9,8 +9,8 @@
 namespace pinjaw::planner::planar {
 namespace {
 
-constexpr double kLongest_rad = 0.1;     // chosen: a cubic follows y over this much for parts of some 100 mm
-constexpr double kShortest_rad = 1e-7;   // chosen: shorter pieces of a fold are taken as upright
+constexpr double kLongest_rad = 0.1;    // chosen: a cubic follows y over this much for parts of some 100 mm
+constexpr double kShortest_rad = 1e-7;  // chosen: shorter pieces of a fold are taken as upright
 constexpr double kOverlap_mm = 1e-9;
 
 struct Offset {
@@ -49,7 +49,8 @@ class PieceMaker {
   PieceMaker(const std::vector<ContactCurve>& curves, std::vector<Piece>& out) : curves_(curves), out_(out) {}
 
   void make(int a, int b, const Offset& offset) {
-    const Pair pair{&curves_[static_cast<std::size_t>(a)], &curves_[static_cast<std::size_t>(b)], offset.apart_mm};
+    const Pair pair{&curves_[static_cast<std::size_t>(a)], &curves_[static_cast<std::size_t>(b)],
+                    offset.apart_mm};
     Piece piece;
     piece.a = a;
     piece.b = b;
@@ -78,8 +79,7 @@ class PieceMaker {
       piece.cone_half_rad = std::numbers::pi;
       return;
     }
-    const double between_rad =
-        std::remainder(pair.b->normal_rad - pair.a->normal_rad, 2 * std::numbers::pi);
+    const double between_rad = std::remainder(pair.b->normal_rad - pair.a->normal_rad, 2 * std::numbers::pi);
     piece.cone_rad = geometry::wrapped_rad(pair.a->normal_rad + between_rad / 2);
     piece.cone_half_rad = std::abs(between_rad) / 2;
   }
@@ -102,11 +102,13 @@ class PieceMaker {
     split(pair, branch, {middle, theta_rad.hi}, piece);
   }
 
-  /// Keeps the piece with the y of its ends and middle; an end that rounding has put beyond a fold adds nothing.
+  /// Keeps the piece with the y of its ends and middle; an end that rounding has put beyond a fold adds
+  /// nothing.
   void upright(const Pair& pair, int branch, Piece& piece) {
     piece.upright = true;
     bool any = false;
-    for (const double at : {piece.theta_rad.lo, (piece.theta_rad.lo + piece.theta_rad.hi) / 2, piece.theta_rad.hi}) {
+    for (const double at :
+         {piece.theta_rad.lo, (piece.theta_rad.lo + piece.theta_rad.hi) / 2, piece.theta_rad.hi}) {
       const auto state = state_at(pair, at, branch);
       if (!state) continue;
       const double y = state->o_mm.y();
@@ -129,7 +131,8 @@ class PieceMaker {
     for (const double share : {0.25, 0.5, 0.75}) {
       const double theta_rad = piece.theta_rad.lo + share * width;
       const auto state = state_at(pair, theta_rad, branch);
-      if (!state || !(std::abs(level_at(piece, theta_rad).y_mm - state->o_mm.y()) < kPieceError_mm)) return false;
+      if (!state || !(std::abs(level_at(piece, theta_rad).y_mm - state->o_mm.y()) < kPieceError_mm))
+        return false;
     }
     return true;
   }

@@ -7,8 +7,8 @@
 
 namespace pinjaw::planner::planar {
 
-/// A pair of pins of one jaw in whole holes: B stands `columns` further from the other jaw and `rows` higher than A,
-/// rows > 0, or rows = 0 and columns > 0, so that a set of two pins is told in one way only.
+/// A pair of pins of one jaw in whole holes: B stands `columns` further from the other jaw and `rows` higher
+/// than A, rows > 0, or rows = 0 and columns > 0, so that a set of two pins is told in one way only.
 struct HolePair {
   int columns = 0;
   int rows = 0;
@@ -32,8 +32,8 @@ struct Piece {
 
 inline constexpr double kPieceError_mm = 2e-5;  // chosen: roots are polished; this only steers the search
 
-/// The pieces of every pair of a left jaw: all curves, all hole offsets of the grid, distinct and not overlapping pins.
-/// Grouped by a. A right jaw's are the same turned by 180 degrees.
+/// The pieces of every pair of a left jaw: all curves, all hole offsets of the grid, distinct and not
+/// overlapping pins. Grouped by a. A right jaw's are the same turned by 180 degrees.
 std::vector<Piece> pair_pieces(const std::vector<ContactCurve>& curves, const model::Kit& kit);
 
 /// y and dy/dtheta of a smooth piece.

@@ -9,8 +9,9 @@
 
 namespace pinjaw::planner::planar {
 
-/// Pieces by the slices of theta they reach into, so that slices can be swept apart: two pieces that overlap (or meet
-/// within kThetaGap_rad) are together in the slice where the later one starts, and only there is one of them starting.
+/// Pieces by the slices of theta they reach into, so that slices can be swept apart: two pieces that overlap
+/// (or meet within kThetaGap_rad) are together in the slice where the later one starts, and only there is one
+/// of them starting.
 class ThetaBins {
  public:
   struct Bin {
@@ -18,7 +19,8 @@ class ThetaBins {
     std::vector<const Piece*> going;
   };
 
-  ThetaBins(double turn_rad, std::size_t count) : width_rad_(turn_rad / static_cast<double>(count)), bins_(count) {}
+  ThetaBins(double turn_rad, std::size_t count)
+      : width_rad_(turn_rad / static_cast<double>(count)), bins_(count) {}
 
   void add(const Piece& piece) {
     const std::size_t first = index(piece.theta_rad.lo - kThetaGap_rad);

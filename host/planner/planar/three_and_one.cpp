@@ -42,7 +42,8 @@ class TripleSearch {
   [[nodiscard]] bool room(const HolePair& low, const HolePair& high) const {
     const auto [least, most] = std::minmax({0, low.columns, high.columns});
     if (most - least > kit_.grid.columns - 1) return false;
-    const double apart_mm = kit_.grid.spacing_mm * std::hypot(high.columns - low.columns, high.rows - low.rows);
+    const double apart_mm =
+        kit_.grid.spacing_mm * std::hypot(high.columns - low.columns, high.rows - low.rows);
     return apart_mm >= 2 * kit_.pins.radius_mm - kOverlap_mm;
   }
 
@@ -74,7 +75,8 @@ class TripleSearch {
     const double y_mm = seated.placement.y_mm;
     const int most = kit_.grid.rows - 1;
     const int top = seated.pins[2].row;
-    const int from = std::max(top - most, static_cast<int>(std::ceil((y_mm + reach_mm.lo) / kit_.grid.spacing_mm)));
+    const int from =
+        std::max(top - most, static_cast<int>(std::ceil((y_mm + reach_mm.lo) / kit_.grid.spacing_mm)));
     const int to = std::min(most, static_cast<int>(std::floor((y_mm + reach_mm.hi) / kit_.grid.spacing_mm)));
     for (int row = from; row <= to; ++row) {
       Candidate candidate = seated;
@@ -119,8 +121,9 @@ ByFirst by_first(const ThetaBins::Bin& bin) {
 
 }  // namespace
 
-std::vector<Candidate> three_and_one(const std::vector<Piece>& pieces, const std::vector<ContactCurve>& curves,
-                                     const Judge& judge, const model::Kit& kit, const Watch& watch) {
+std::vector<Candidate> three_and_one(const std::vector<Piece>& pieces,
+                                     const std::vector<ContactCurve>& curves, const Judge& judge,
+                                     const model::Kit& kit, const Watch& watch) {
   ThetaBins bins(kTurn, kBins);
   for (const Piece& piece : pieces) bins.add(piece);
   std::vector<std::vector<Candidate>> found(kBins);

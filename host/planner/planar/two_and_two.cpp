@@ -12,7 +12,7 @@ namespace pinjaw::planner::planar {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr std::size_t kBins = 512;          // chosen: slices of some 0.006 rad
+constexpr std::size_t kBins = 512;           // chosen: slices of some 0.006 rad
 constexpr double kLeastOverlap_rad = 1e-10;  // research: a gap between normals of exactly pi never closes
 
 /// A left pair seen from the right jaw, the gripper turned by 180 degrees: y of pin A is mirrored.
@@ -46,9 +46,12 @@ class SliceSearch {
 
  private:
   void meet(const Piece& left, const Piece& right) {
-    const auto try_at = [&](double theta_rad, double y_mm, int row) { weigh(left, right, theta_rad, y_mm, row); };
+    const auto try_at = [&](double theta_rad, double y_mm, int row) {
+      weigh(left, right, theta_rad, y_mm, row);
+    };
     const int most = kit_.grid.rows - 1;
-    PieceCrossing(kit_.grid.spacing_mm, try_at)(left, right, {left.holes.rows + right.holes.rows - most, most});
+    PieceCrossing(kit_.grid.spacing_mm, try_at)(left, right,
+                                                {left.holes.rows + right.holes.rows - most, most});
   }
 
   void weigh(const Piece& left, const Piece& right, double theta_rad, double y_mm, int row) {
@@ -74,8 +77,8 @@ class SliceSearch {
 
 }  // namespace
 
-std::vector<Candidate> two_and_two(const std::vector<Piece>& pieces, const Judge& judge, const model::Kit& kit,
-                                   const Watch& watch) {
+std::vector<Candidate> two_and_two(const std::vector<Piece>& pieces, const Judge& judge,
+                                   const model::Kit& kit, const Watch& watch) {
   ThetaBins lefts(kPi, kBins);
   ThetaBins rights(kPi, kBins);
   std::vector<Piece> turned_pieces;

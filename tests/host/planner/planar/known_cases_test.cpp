@@ -57,8 +57,7 @@ TEST_P(KnownCases, can_be_placed_on_their_plates) {
     const PlacedFixture placed = placed_least(known.kit, fixture);
     EXPECT_TRUE(known.kit.jaws.separation_mm.contains(placed.jaw_separation_mm));
     for (std::size_t k = 0; k < 4; ++k) {
-      const auto p_GHole_mm =
-          model::p_GHole_mm(known.kit.grid, placed.holes[k], placed.jaw_separation_mm);
+      const auto p_GHole_mm = model::p_GHole_mm(known.kit.grid, placed.holes[k], placed.jaw_separation_mm);
       const auto p_GFoot_mm = placed.part_pose * fixture.pins[k].p_PFoot_mm;
       const geometry::Vector2d n_G = placed.part_pose.turned(fixture.pins[k].n_P);
       EXPECT_LT((p_GHole_mm + known.kit.pins.radius_mm * n_G - p_GFoot_mm).norm(), 1e-8);
@@ -66,7 +65,8 @@ TEST_P(KnownCases, can_be_placed_on_their_plates) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Planar, KnownCases, testing::Values("triangle", "lshape", "pentagon", "star12", "arcs"),
+INSTANTIATE_TEST_SUITE_P(Planar, KnownCases,
+                         testing::Values("triangle", "lshape", "pentagon", "star12", "arcs"),
                          [](const auto& one) { return std::string(one.param); });
 
 }  // namespace

@@ -15,11 +15,13 @@ namespace {
 using geometry::Vector2d;
 
 model::Profile crooked_pentagon() {
-  return polygon_profile({Vector2d(0, 0), Vector2d(32, -4), Vector2d(43, 19), Vector2d(21, 38), Vector2d(-6, 24)});
+  return polygon_profile(
+      {Vector2d(0, 0), Vector2d(32, -4), Vector2d(43, 19), Vector2d(21, 38), Vector2d(-6, 24)});
 }
 
 std::ptrdiff_t count_of(const std::vector<PlanarFixture>& fixtures, model::Split split) {
-  return std::ranges::count_if(fixtures, [&](const PlanarFixture& fixture) { return fixture.split == split; });
+  return std::ranges::count_if(fixtures,
+                               [&](const PlanarFixture& fixture) { return fixture.split == split; });
 }
 
 TEST(PlanarLaws, a_part_without_features_has_no_fixture) {
@@ -64,7 +66,8 @@ TEST(PlanarLaws, turning_the_gripper_gives_the_same_list) {
 TEST(PlanarLaws, turning_the_part_by_half_a_turn_gives_the_same_list) {
   const auto still = all_fixtures(rounded_part(), small_kit(3, 4));
   const geometry::Pose2 half{std::numbers::pi, Vector2d::Zero()};
-  EXPECT_TRUE(same_lists(still, all_fixtures(moved(rounded_part(), half), small_kit(3, 4)), -std::numbers::pi));
+  EXPECT_TRUE(
+      same_lists(still, all_fixtures(moved(rounded_part(), half), small_kit(3, 4)), -std::numbers::pi));
 }
 
 TEST(PlanarLaws, any_number_of_threads_gives_the_same_bytes) {
@@ -82,9 +85,8 @@ TEST(PlanarLaws, a_larger_kit_loses_no_fixture) {
   const auto small = all_fixtures(crooked_pentagon(), small_kit(2, 3));
   const auto large = all_fixtures(crooked_pentagon(), small_kit(3, 5));
   for (const PlanarFixture& fixture : small) {
-    const bool kept = std::ranges::any_of(large, [&](const PlanarFixture& other) {
-      return same_lists({fixture}, {other});
-    });
+    const bool kept = std::ranges::any_of(
+        large, [&](const PlanarFixture& other) { return same_lists({fixture}, {other}); });
     EXPECT_TRUE(kept);
   }
 }

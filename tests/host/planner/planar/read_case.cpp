@@ -19,7 +19,9 @@ json read_json(const std::string& name, const std::string& file) {
   return json::parse(in);
 }
 
-Vector2d point_of(const json& value) { return Vector2d(value.at(0).get<double>(), value.at(1).get<double>()); }
+Vector2d point_of(const json& value) {
+  return Vector2d(value.at(0).get<double>(), value.at(1).get<double>());
+}
 
 model::ProfileEdge edge_of(const json& value) {
   model::ProfileEdge edge;

@@ -20,7 +20,7 @@ struct KnownFixture {
   std::string split;
   double theta_rad = 0;
   double span_mm = 0;
-  bool borderline = false;  ///< a margin under 1e-5: may be in a list or not
+  bool borderline = false;     ///< a margin under 1e-5: may be in a list or not
   std::vector<KnownPin> pins;  ///< sorted
 };
 

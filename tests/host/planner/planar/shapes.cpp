@@ -16,7 +16,8 @@ using geometry::Vector2d;
 constexpr double kPi = std::numbers::pi;
 
 geometry::Curve moved(const geometry::Curve& curve, const geometry::Pose2& motion) {
-  if (const auto* segment = std::get_if<Segment>(&curve)) return Segment{motion * segment->a_mm, motion * segment->b_mm};
+  if (const auto* segment = std::get_if<Segment>(&curve))
+    return Segment{motion * segment->a_mm, motion * segment->b_mm};
   Arc arc = std::get<Arc>(curve);
   arc.center_mm = motion * arc.center_mm;
   arc.from_rad += motion.theta_rad;
@@ -25,7 +26,8 @@ geometry::Curve moved(const geometry::Curve& curve, const geometry::Pose2& motio
 
 geometry::Curve mirrored(const geometry::Curve& curve) {
   const auto flip = [](const Vector2d& v) { return Vector2d(-v.x(), v.y()); };
-  if (const auto* segment = std::get_if<Segment>(&curve)) return Segment{flip(segment->b_mm), flip(segment->a_mm)};
+  if (const auto* segment = std::get_if<Segment>(&curve))
+    return Segment{flip(segment->b_mm), flip(segment->a_mm)};
   Arc arc = std::get<Arc>(curve);
   arc.center_mm = flip(arc.center_mm);
   arc.from_rad = kPi - arc.from_rad - arc.sweep_rad;
@@ -33,7 +35,8 @@ geometry::Curve mirrored(const geometry::Curve& curve) {
 }
 
 geometry::Curve scaled(const geometry::Curve& curve, double factor) {
-  if (const auto* segment = std::get_if<Segment>(&curve)) return Segment{factor * segment->a_mm, factor * segment->b_mm};
+  if (const auto* segment = std::get_if<Segment>(&curve))
+    return Segment{factor * segment->a_mm, factor * segment->b_mm};
   Arc arc = std::get<Arc>(curve);
   arc.center_mm *= factor;
   arc.radius_mm *= factor;
@@ -73,7 +76,9 @@ model::Profile profile_of_loop(const std::vector<model::ProfileEdge>& loop) {
   return profile;
 }
 
-model::Profile polygon_profile(const std::vector<Vector2d>& points) { return profile_of_loop(polygon(points)); }
+model::Profile polygon_profile(const std::vector<Vector2d>& points) {
+  return profile_of_loop(polygon(points));
+}
 
 model::Profile rounded_part() {
   std::vector<model::ProfileEdge> loop(6);
@@ -119,7 +124,8 @@ std::vector<PlanarFixture> all_fixtures(const model::Profile& profile, const mod
   return plan_planar_fixtures(model::features_of(profile), kit, options).fixtures;
 }
 
-bool same_lists(const std::vector<PlanarFixture>& one, const std::vector<PlanarFixture>& other, double turn_rad) {
+bool same_lists(const std::vector<PlanarFixture>& one, const std::vector<PlanarFixture>& other,
+                double turn_rad) {
   if (one.size() != other.size()) return false;
   std::vector<bool> used(other.size(), false);
   for (const PlanarFixture& fixture : one) {

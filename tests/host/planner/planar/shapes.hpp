@@ -25,7 +25,9 @@ model::Kit scaled(const model::Kit& kit, double factor);
 std::vector<PlanarFixture> all_fixtures(const model::Profile& profile, const model::Kit& kit,
                                         Twins twins = Twins::Both, int threads = 0);
 
-/// Whether each fixture of one list has its like in the other: split, holes, edges, span, and theta moved by `turn_rad`.
-bool same_lists(const std::vector<PlanarFixture>& one, const std::vector<PlanarFixture>& other, double turn_rad = 0);
+/// Whether each fixture of one list has its like in the other: split, holes, edges, span, and theta moved by
+/// `turn_rad`.
+bool same_lists(const std::vector<PlanarFixture>& one, const std::vector<PlanarFixture>& other,
+                double turn_rad = 0);
 
 }  // namespace pinjaw::planner

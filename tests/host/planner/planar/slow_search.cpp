@@ -19,13 +19,17 @@ using geometry::Vector2d;
 
 constexpr double kTurn = 2 * std::numbers::pi;
 
-Vector2d turned(double a, const Vector2d& v) { return geometry::Pose2{a, Vector2d::Zero()}.turned(v); }
-double cross(const Vector2d& u, const Vector2d& v) { return u.x() * v.y() - u.y() * v.x(); }
+Vector2d turned(double a, const Vector2d& v) {
+  return geometry::Pose2{a, Vector2d::Zero()}.turned(v);
+}
+double cross(const Vector2d& u, const Vector2d& v) {
+  return u.x() * v.y() - u.y() * v.x();
+}
 
 /// A straight line or a circle in the plane of part origins.
 struct Locus {
   bool circle = false;
-  Vector2d point = Vector2d::Zero();      ///< on the line; centre of the circle
+  Vector2d point = Vector2d::Zero();  ///< on the line; centre of the circle
   Vector2d direction = Vector2d::UnitX();
   double radius = 0;
 };
@@ -72,7 +76,7 @@ struct Placed {
 
 class Search {
  public:
-  Search(const model::Profile& profile, const model::Kit& kit, int steps)
+  Search(const model::Profile& profile, const model::Kit& kit, const ThetaSteps& steps)
       : profile_(profile), kit_(kit), features_(model::features_of(profile)), steps_(steps) {
     for (int rows = 0; rows < kit.grid.rows; ++rows) {
       for (int columns = rows == 0 ? 1 : 1 - kit.grid.columns; columns < kit.grid.columns; ++columns) {
@@ -82,9 +86,10 @@ class Search {
   }
 
   std::vector<SlowFixture> run() {
-    std::vector<Alive> before[2] = {alive(0.5 * step(), true), alive(0.5 * step(), false)};
-    for (int i = 0; i < steps_; ++i) {
-      const double lo = (i + 0.5) * step();
+    const double start = steps_.from_rad + 0.5 * step();
+    std::vector<Alive> before[2] = {alive(start, true), alive(start, false)};
+    for (int i = 0; i < steps_.count; ++i) {
+      const double lo = start + i * step();
       std::vector<Alive> after[2] = {alive(lo + step(), true), alive(lo + step(), false)};
       pairs(lo, before, after);
       triples(lo, before[0], after[0]);
@@ -105,7 +110,7 @@ class Search {
     Vector2d o_mm;  ///< part origin from pin A
   };
 
-  [[nodiscard]] double step() const { return kTurn / steps_; }
+  [[nodiscard]] double step() const { return (steps_.to_rad - steps_.from_rad) / steps_.count; }
   [[nodiscard]] Vector2d apart(int offset, bool left) const {
     const Offset& o = offsets_[static_cast<std::size_t>(offset)];
     return kit_.grid.spacing_mm * Vector2d(left ? -o.columns : o.columns, o.rows);
@@ -129,7 +134,8 @@ class Search {
     return result;
   }
 
-  /// Whether the pin stands on the feature's piece with room `slack_mm`, and its outward normal in the jaw frame.
+  /// Whether the pin stands on the feature's piece with room `slack_mm`, and its outward normal in the jaw
+  /// frame.
   [[nodiscard]] std::optional<Vector2d> contact(int feature, double theta, const Vector2d& pin_mm,
                                                 const Vector2d& o_mm, double slack_mm) const {
     const model::Feature& f = features_[static_cast<std::size_t>(feature)];
@@ -180,8 +186,8 @@ class Search {
     Key key;
     double y0, y1;
   };
-  [[nodiscard]] std::vector<Moving> moving(double lo, const std::vector<Alive>& before, const std::vector<Alive>& after,
-                                           bool left) const {
+  [[nodiscard]] std::vector<Moving> moving(double lo, const std::vector<Alive>& before,
+                                           const std::vector<Alive>& after, bool left) const {
     std::map<Key, std::pair<std::optional<double>, std::optional<double>>> both;
     for (const Alive& one : before) both[one.key].first = one.o_mm.y();
     for (const Alive& one : after) both[one.key].second = one.o_mm.y();
@@ -367,7 +373,8 @@ class Search {
     const double canonical = span + (least[0] + least[1]) * d;
     bool in_range = false;
     for (int shift = 0; shift <= 2 * (kit_.grid.columns - 1) - extent[0] - extent[1]; ++shift) {
-      in_range = in_range || kit_.jaws.separation_mm.contains(canonical - 2 * kit_.grid.edge_offset_mm - shift * d);
+      in_range =
+          in_range || kit_.jaws.separation_mm.contains(canonical - 2 * kit_.grid.edge_offset_mm - shift * d);
     }
     if (!in_range) return;
     SlowFixture one{geometry::wrapped_rad(theta), canonical, margin, {}};
@@ -388,14 +395,15 @@ class Search {
   const model::Profile& profile_;
   const model::Kit& kit_;
   std::vector<model::Feature> features_;
-  int steps_;
+  ThetaSteps steps_;
   std::vector<Offset> offsets_;
   std::vector<SlowFixture> found_;
 };
 
 }  // namespace
 
-std::vector<SlowFixture> slow_search(const model::Profile& profile, const model::Kit& kit, int steps) {
+std::vector<SlowFixture> slow_search(const model::Profile& profile, const model::Kit& kit,
+                                     const ThetaSteps& steps) {
   return Search(profile, kit, steps).run();
 }
 

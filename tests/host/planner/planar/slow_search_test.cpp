@@ -17,7 +17,7 @@ using geometry::Segment;
 using geometry::Vector2d;
 
 constexpr double kTurn = 2 * std::numbers::pi;
-constexpr int kSteps = 3000;
+constexpr int kSteps = 2500;
 constexpr double kClearMargin = 1e-4;  // fixtures on the brink may be in one list only
 
 /// A star-like outline; some edges bulge out or in as arcs, and sometimes there is a hole.
@@ -59,7 +59,8 @@ model::Profile random_profile(base::Random& random) {
 
 bool same(const PlanarFixture& ours, const SlowFixture& theirs) {
   for (std::size_t k = 0; k < 4; ++k) {
-    if (ours.pins[k].hole != theirs.pins[k].hole || ours.pins[k].feature != theirs.pins[k].feature) return false;
+    if (ours.pins[k].hole != theirs.pins[k].hole || ours.pins[k].feature != theirs.pins[k].feature)
+      return false;
   }
   return std::abs(std::remainder(ours.theta_rad - theirs.theta_rad, kTurn)) < 1e-6 &&
          std::abs(ours.span_mm - theirs.span_mm) < 1e-5;
@@ -73,25 +74,35 @@ TEST(PlanarSlowSearch, agrees_on_random_profiles_of_lines_arcs_and_holes) {
   base::Random random(7);
   const model::Kit kit = small_kit(2, 3);
   std::size_t compared = 0;
-  for (int round = 0; round < 25; ++round) {
+  for (int round = 0; round < 15; ++round) {
     const model::Profile profile = random_profile(random);
     const auto fast = all_fixtures(profile, kit);
-    const auto slow = slow_search(profile, kit, kSteps);
+    const auto slow = slow_search(profile, kit, {0, kTurn, kSteps});
     for (const SlowFixture& theirs : slow) {
       if (theirs.closure_margin < kClearMargin) continue;
-      const bool known = std::ranges::any_of(fast, [&](const PlanarFixture& ours) { return same(ours, theirs); });
-      EXPECT_TRUE(known) << "round " << round << ": the slow search alone has theta " << theirs.theta_rad << " span "
-                         << theirs.span_mm << " margin " << theirs.closure_margin;
+      const bool known =
+          std::ranges::any_of(fast, [&](const PlanarFixture& ours) { return same(ours, theirs); });
+      EXPECT_TRUE(known) << "round " << round << ": the slow search alone has theta " << theirs.theta_rad
+                         << " span " << theirs.span_mm << " margin " << theirs.closure_margin;
     }
     for (const PlanarFixture& ours : fast) {
       if (ours.closure_margin < 1e-2 || least_foot_margin_mm(ours) < 0.2) continue;
-      const bool known = std::ranges::any_of(slow, [&](const SlowFixture& theirs) { return same(ours, theirs); });
-      EXPECT_TRUE(known) << "round " << round << ": the fast search alone has theta " << ours.theta_rad << " span "
-                         << ours.span_mm << " margin " << ours.closure_margin;
+      const auto is_ours = [&](const SlowFixture& theirs) { return same(ours, theirs); };
+      bool known = std::ranges::any_of(slow, is_ours);
+      for (const double turn_rad :
+           {0.0, kTurn / 2}) {  // held for less than a step: look closer, at the twin as well
+        if (known) break;
+        constexpr double kAround_rad = 0.004;
+        const double middle_rad = ours.theta_rad + turn_rad;
+        const ThetaSteps closer{middle_rad - kAround_rad, middle_rad + kAround_rad, 400};
+        known = std::ranges::any_of(slow_search(profile, kit, closer), is_ours);
+      }
+      EXPECT_TRUE(known) << "round " << round << ": the fast search alone has theta " << ours.theta_rad
+                         << " span " << ours.span_mm << " margin " << ours.closure_margin;
       ++compared;
     }
   }
-  EXPECT_GT(compared, 300U);
+  EXPECT_GT(compared, 200U);
 }
 
 }  // namespace
