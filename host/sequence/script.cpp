@@ -61,7 +61,7 @@ class Writer {
     const std::uint8_t node = holder_->node();
     script_.actions = {tell(bench::Enable{node, true}), tell(place),
                        operate("close on the part", node, [node](auto& client) { client.close_light(node); })};
-    if (holder_->grips()) script_.actions.push_back(squeeze(*holder_));
+    script_.actions.push_back(squeeze(*holder_));
     script_.actions.push_back(until(fmt::format("{} does not come to hold the part", step.on), kSettle_us,
                                     [node](const auto& client) { return client.node(node).in(wire::State::Hold); }));
     script_.actions.push_back(tell(bench::Enable{node, false}));
@@ -94,7 +94,7 @@ class Writer {
         tell(bench::Meet{{giver, receiver}}),
         operate("offer", giver, [giver, receiver](auto& client) { client.offer(giver, receiver); }),
         operate("accept", receiver, [giver, receiver](auto& client) { client.accept(receiver, giver); })};
-    if (taker.grips()) script_.actions.push_back(squeeze(taker));
+    script_.actions.push_back(squeeze(taker));
     script_.actions.push_back(until(fmt::format("{} does not let go", step.from), kSettle_us, script_.reached));
     script_.undo = {
         attempt(operate("abort", receiver, [receiver](auto& client) { client.abort(receiver); })),
@@ -145,6 +145,7 @@ class Writer {
     return {};
   }
 
+  /// A station that does not grip takes part with no force: its seats are what must be stable.
   Action squeeze(const Member& member) {
     return operate("squeeze", member.node(), [node = member.node(), forces = member.squeeze()](auto& client) {
       client.squeeze(node, forces);
