@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "host/base/json_number.hpp"
 #include "protocol/wire/names.hpp"
 
 namespace pinjaw::sequence {
@@ -10,16 +11,19 @@ namespace {
 
 using nlohmann::ordered_json;
 
+/// Virtual and real time are counted in microseconds.
+double seconds(double time_s) { return base::rounded(time_s, 6); }
+
 ordered_json step_json(const StepReport& step) {
   ordered_json states = ordered_json::array();
   for (const StateChange& change : step.states) {
-    states.push_back({{"t_s", change.t_s},
+    states.push_back({{"t_s", seconds(change.t_s)},
                       {"node", change.node},
                       {"state", wire::to_string(change.state)},
                       {"fact", wire::to_string(change.fact)}});
   }
-  return {{"step", step.step},   {"result", step.result}, {"from_s", step.from_s},
-          {"to_s", step.to_s},   {"tries", step.tries},   {"states", states}};
+  return {{"step", step.step},   {"result", step.result}, {"from_s", seconds(step.from_s)},
+          {"to_s", seconds(step.to_s)},   {"tries", step.tries},   {"states", states}};
 }
 
 ordered_json plant_json(const std::optional<bench::Truth>& truth) {

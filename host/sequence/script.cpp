@@ -15,7 +15,8 @@ namespace {
 
 constexpr int kHandoffTries = 3;                      // the contract's number
 constexpr std::int64_t kSettle_us = 5'000'000;        // chosen: ten times what a handoff's last states take
-constexpr double kLevelRad = 1e-6;
+constexpr double kHandAwayS = 0.1;                    // chosen: a hand takes the part away at once
+constexpr double kLevelRad = 1e-4;  // chosen: rounding of a script's degrees, far under a real tilt
 
 /// Writes one script after the other and remembers where the part is then.
 class Writer {
@@ -74,7 +75,7 @@ class Writer {
     const std::uint8_t node = holder_->node();
     script_.actions = {tell(bench::Enable{node, true}), tell(bench::Remove{node}),
                        operate("release by hand", node, [node](auto& client) { client.release(node); }),
-                       tell(bench::Enable{node, false})};
+                       tell(bench::Enable{node, false}), pause(kHandAwayS)};
     holder_ = nullptr;
     return {};
   }
@@ -156,7 +157,7 @@ class Writer {
   base::Expected<void> at_level(const std::string& station) {
     if (holder_ == nullptr || holder_->name() != station) return base::failure("the part is not at " + station + " then");
     const double tilt_rad = std::acos(std::clamp(carried_.down.dot(-model::Vector3d::UnitZ()), -1.0, 1.0));
-    if (tilt_rad > kLevelRad * 100) {
+    if (tilt_rad > kLevelRad) {
       return base::failure(fmt::format("{} is turned by {:.1f} deg then; rotate it back first", station,
                                        tilt_rad * 180 / std::numbers::pi));
     }
