@@ -8,10 +8,10 @@ HostLink::Host& HostLink::slot_for(std::uint16_t epoch) {
   for (Host& host : hosts_) {
     if (host.heard.running() && host.epoch == epoch) return host;
   }
-  Host& free = hosts_[0].heard.running() ? hosts_[1] : hosts_[0];
-  free = Host{};
-  free.epoch = epoch;
-  return free;
+  Host& spare = hosts_[0].heard.running() ? hosts_[1] : hosts_[0];
+  spare = Host{};
+  spare.epoch = epoch;
+  return spare;
 }
 
 void HostLink::hear(const wire::Received<wire::HostHeartbeat>& heartbeat, std::uint8_t node) {
