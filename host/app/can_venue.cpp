@@ -5,6 +5,7 @@
 #include "host/app/venue.hpp"
 #include "protocol/bench/unix_socket.hpp"
 #include "protocol/bus/candump.hpp"
+#include "protocol/bus/frame_bits.hpp"
 #include "protocol/socketcan/socket_bus.hpp"
 
 namespace pinjaw::app {
@@ -12,6 +13,8 @@ namespace pinjaw::app {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+constexpr double kBitsPerSecond = 500'000;  // the contract's; an interface need not know its rate (vcan has none)
 
 std::int64_t since_1970_us() {
   return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch())
@@ -36,13 +39,19 @@ class RecordingBus final : public bus::Bus {
   }
   [[nodiscard]] bus::Statistics statistics() const override { return inner_->statistics(); }
   [[nodiscard]] const std::string& log() const { return log_; }
+  /// Of all frames seen, as they take on a wire.
+  [[nodiscard]] std::int64_t bits() const { return bits_; }
 
  private:
-  void record(const bus::LogLine& line) { log_ += bus::to_log_line(line) + "\n"; }
+  void record(const bus::LogLine& line) {
+    log_ += bus::to_log_line(line) + "\n";
+    bits_ += bus::bits_on_bus(line.frame);
+  }
 
   std::unique_ptr<bus::Bus> inner_;
   std::string interface_;
   std::string log_;
+  std::int64_t bits_ = 0;
 };
 
 class CanVenue final : public Venue {
@@ -57,7 +66,12 @@ class CanVenue final : public Venue {
     std::this_thread::sleep_until(next_);
     return std::chrono::duration_cast<std::chrono::microseconds>(Clock::now() - started_).count();
   }
-  [[nodiscard]] std::optional<double> load_percent() const override { return std::nullopt; }
+  void lose_frames(double /*share*/, double /*seconds*/) override {}
+  [[nodiscard]] bool loses_frames() const override { return false; }
+  [[nodiscard]] std::optional<double> load_percent() const override {
+    const auto elapsed = std::chrono::duration<double>(Clock::now() - started_).count();
+    return elapsed > 0 ? 100 * static_cast<double>(bus_.bits()) / (kBitsPerSecond * elapsed) : 0.0;
+  }
   [[nodiscard]] const std::string& log() const override { return bus_.log(); }
 
  private:

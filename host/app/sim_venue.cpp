@@ -28,19 +28,11 @@ node::Figures figures_of(const model::Station& station) {
 
 class SimVenue final : public Venue {
  public:
-  SimVenue(const model::Cell& cell, std::uint64_t seed, const std::vector<Losses>& losses)
+  SimVenue(const model::Cell& cell, std::uint64_t seed)
       : wire_({.seed = seed}), host_end_(wire_.open()), ends_(open_ends(cell)), world_(members(cell), seed), port_([this](const bench::Request& request) { return world_.handle(request); }) {
     wire_.on_frame([this](const bus::Received& received) {
       log_ += bus::to_log_line({received.time_us, "sim0", received.frame}) + "\n";
     });
-    for (const Losses& loss : losses) {
-      bus::Fault fault;
-      fault.kind = bus::FaultKind::Drop;
-      fault.from_us = static_cast<std::int64_t>(loss.from_s * 1e6);
-      fault.to_us = fault.from_us + static_cast<std::int64_t>(loss.seconds * 1e6);
-      fault.share = loss.share;
-      wire_.add_fault(fault);
-    }
   }
 
   bus::Bus& bus() override { return *host_end_; }
@@ -52,6 +44,15 @@ class SimVenue final : public Venue {
     static_cast<void>(world_.step());
     return now_us_;
   }
+  void lose_frames(double share, double seconds) override {
+    bus::Fault fault;
+    fault.kind = bus::FaultKind::Drop;
+    fault.from_us = wire_.now_us();
+    fault.to_us = fault.from_us + static_cast<std::int64_t>(seconds * 1e6);
+    fault.share = share;
+    wire_.add_fault(fault);
+  }
+  [[nodiscard]] bool loses_frames() const override { return true; }
   [[nodiscard]] std::optional<double> load_percent() const override { return wire_.load().percent(); }
   [[nodiscard]] const std::string& log() const override { return log_; }
 
@@ -80,8 +81,8 @@ class SimVenue final : public Venue {
 
 }  // namespace
 
-std::unique_ptr<Venue> open_sim_venue(const model::Cell& cell, std::uint64_t seed, const std::vector<Losses>& losses) {
-  return std::make_unique<SimVenue>(cell, seed, losses);
+std::unique_ptr<Venue> open_sim_venue(const model::Cell& cell, std::uint64_t seed) {
+  return std::make_unique<SimVenue>(cell, seed);
 }
 
 }  // namespace pinjaw::app

@@ -27,21 +27,17 @@ class Venue {
   virtual bench::WorldPort* world() = 0;
   /// Lets a millisecond pass; gives the time since the venue opened.
   virtual std::int64_t tick_us() = 0;
+  /// Loses a share (0..1) of all frames for so many seconds from now on; only where loses_frames().
+  virtual void lose_frames(double share, double seconds) = 0;
+  [[nodiscard]] virtual bool loses_frames() const = 0;
   /// Share of time that the bus was busy; nothing where the bus cannot tell.
   [[nodiscard]] virtual std::optional<double> load_percent() const = 0;
   /// Every frame seen so far, in candump's format.
   [[nodiscard]] virtual const std::string& log() const = 0;
 };
 
-/// A share of frames lost for a while, on the in-process bus.
-struct Losses {
-  double from_s = 0;
-  double seconds = 0;
-  double share = 0;
-};
-
 /// An in-process bus in virtual time with a simulated controller for each station of `cell`.
-std::unique_ptr<Venue> open_sim_venue(const model::Cell& cell, std::uint64_t seed, const std::vector<Losses>& losses);
+std::unique_ptr<Venue> open_sim_venue(const model::Cell& cell, std::uint64_t seed);
 
 /// A CAN interface of this machine, and the world served at `world_path` (none where it is empty). Fails with a
 /// sentence that tells the way out.

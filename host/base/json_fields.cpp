@@ -69,6 +69,24 @@ std::string JsonField::text() const {
   return {};
 }
 
+bool JsonField::truth() const {
+  if (value_ == nullptr) return false;
+  if (value_->is_boolean()) return value_->get<bool>();
+  expected("true or false");
+  return false;
+}
+
+std::vector<std::string> JsonField::keys() const {
+  std::vector<std::string> names;
+  if (value_ == nullptr) return names;
+  if (!value_->is_object()) {
+    expected("an object");
+    return names;
+  }
+  for (const auto& [name, value] : value_->items()) names.push_back(name);
+  return names;
+}
+
 std::vector<JsonField> JsonField::list() const {
   std::vector<JsonField> entries;
   if (value_ == nullptr) return entries;

@@ -25,7 +25,10 @@ class JsonField {
   [[nodiscard]] double number() const;
   [[nodiscard]] std::int64_t whole() const;
   [[nodiscard]] std::string text() const;
+  [[nodiscard]] bool truth() const;
   [[nodiscard]] std::vector<JsonField> list() const;
+  /// Of an object, in their order in the document's value.
+  [[nodiscard]] std::vector<std::string> keys() const;
   /// Exactly `count` numbers.
   [[nodiscard]] std::vector<double> numbers(std::size_t count) const;
   /// Position in `words` of the one that is written; 0 with a mistake where it is none of them.

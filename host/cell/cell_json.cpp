@@ -16,6 +16,19 @@ ordered_json funnel_json(const planner::Funnel& funnel) {
       {"strong", funnel.strong}};
 }
 
+ordered_json part_json(const planner::PartFacts& part) {
+  return {{"file", part.file}, {"sha256", part.sha256}, {"up", planner::vector_json(part.up)}};
+}
+
+/// The funnel, and what the station's designs were made for.
+ordered_json station_json(const StationPlan& station) {
+  ordered_json entry = funnel_json(station.plan.funnel);
+  entry["kit"] = {{"name", station.plan.kit.name}, {"sha256", station.plan.kit.sha256}};
+  entry["side"] = station.plan.side == model::Side::Below ? "below" : "above";
+  entry["grips"] = station.grips;
+  return entry;
+}
+
 ordered_json design_json(const CellDesign& design) {
   ordered_json stations = ordered_json::object();
   for (const StationDesign& station : design.stations) {
@@ -34,9 +47,10 @@ std::string to_json(const CellPlan& plan) {
   ordered_json document;
   document["format"] = "pinjaw-cell/1";
   document["cell"] = plan.cell;
+  if (!plan.stations.empty()) document["part"] = part_json(plan.stations.front().plan.part);
   document["stations"] = ordered_json::object();
   for (const StationPlan& station : plan.stations) {
-    document["stations"][station.station] = funnel_json(station.plan.funnel);
+    document["stations"][station.station] = station_json(station);
   }
   document["pairs"] = ordered_json::array();
   for (const PairCount& pair : plan.pairs) {

@@ -141,7 +141,7 @@ base::Expected<CellPlan> make_cell_plan(const model::Cell& cell, const CellOptio
     const bool chooses = handoffs_at(cell, station.name) == 1;
     setups.push_back(setups_of(station, planned->plan.designs, planned->part_low_mm,
                                chooses ? Stances::All : Stances::OwnOnly));
-    plan.stations.push_back({station.name, std::move(planned->plan)});
+    plan.stations.push_back({station.name, std::move(planned->plan), station.grips});
   }
 
   std::vector<Partners> partners;

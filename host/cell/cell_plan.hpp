@@ -36,6 +36,7 @@ struct PairCount {
 struct StationPlan {
   std::string station;
   planner::Plan plan;  ///< every design; of a pallet: three pins each, the funnel's force phases equal to loadable
+  bool grips = true;
 };
 
 /// Phase 6 (BB 3.6, 4.1): compatible designs for all stations of a cell, smallest max_required_n first.

@@ -26,7 +26,7 @@ ActionState state_of(const jaw_client::Outcome& outcome) {
 ActionState ask(Stage& stage, const bench::Request& request) {
   if (stage.world == nullptr) return Finished{};
   const auto reply = stage.world->ask(request);
-  if (!reply) return Failed{Trouble::World, "the world: " + reply.error().message};
+  if (!reply) return Failed{Trouble::Silent, "the world: " + reply.error().message};
   if (const auto* refused = std::get_if<bench::Refused>(&*reply)) {
     return Failed{Trouble::World, "the world: " + refused->reason};
   }

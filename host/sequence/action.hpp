@@ -21,7 +21,12 @@ struct Stage {
 struct StillGoing {};
 struct Finished {};
 
-enum class Trouble { Refused, ForceLimit, Silent, World };
+enum class Trouble {
+  Refused,     ///< a controller said no, or has a fault
+  ForceLimit,  ///< it said no because of a force
+  Silent,      ///< the bus, a controller or the world does not answer, or not in time
+  World,       ///< the world said no
+};
 
 /// Why an action failed, for a person.
 struct Failed {

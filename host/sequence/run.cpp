@@ -10,9 +10,10 @@ Run::Run(const model::Sequence& sequence, const Crew& crew, std::vector<StepScri
          std::uint16_t epoch)
     : sequence_(sequence),
       scripts_(std::move(scripts)),
-      bus_(venue.bus),
-      client_(*venue.bus, {.epoch = epoch, .speaks = true}),
-      stage_{client_, venue.world} {
+      venue_(std::move(venue)),
+      injected_(sequence.faults.size()),
+      client_(*venue_.bus, {.epoch = epoch, .speaks = true}),
+      stage_{client_, venue_.world} {
   report_.sequence = sequence.name;
   for (const Member& member : crew.members()) nodes_.push_back(member.node());
   for (const int node : nodes_) last_.push_back({-1, node, wire::State::Boot, wire::Fact::Unknown});
@@ -32,13 +33,14 @@ void Run::step(std::int64_t now_us) {
     begin_try();
     report_.steps.push_back({.step = playing(), .result = "", .from_s = 0, .to_s = 0, .tries = 1, .states = {}});
   }
-  check_kill();
+  inject_faults();
   if (killed_) {
     if (time_s() >= over_at_s_) over_ = true;
     return;
   }
   client_.step(now_us);
   note_states();
+  if (client_.bus_failure()) return give_up({Trouble::Silent, client_.bus_failure()->message});
   play();
 }
 
@@ -55,17 +57,20 @@ void Run::note_states() {
   }
 }
 
-void Run::check_kill() {
-  if (killed_) return;
-  for (const model::ScriptedFault& fault : sequence_.faults) {
-    if (!fault.kill_host) continue;
-    const bool by_step = fault.at_step && step_ >= static_cast<std::size_t>(*fault.at_step);
+void Run::inject_faults() {
+  for (std::size_t i = 0; i < sequence_.faults.size(); ++i) {
+    const model::ScriptedFault& fault = sequence_.faults[i];
+    const bool by_step = fault.at_step && step_ >= static_cast<std::size_t>(*fault.at_step);  // step 0 sets up
     const bool by_time = fault.at_s && time_s() >= *fault.at_s;
-    if (!by_step && !by_time) continue;
-    killed_ = true;
-    over_at_s_ = time_s() + kAftermathS;
-    finish_step("the host was killed");
-    return;
+    if (injected_[i] || (!by_step && !by_time)) continue;
+    injected_[i] = true;
+    if (!fault.kill_host) {
+      if (venue_.lose_frames) venue_.lose_frames(fault.drop_share, fault.seconds);
+    } else if (!killed_) {
+      killed_ = true;
+      over_at_s_ = time_s() + kAftermathS;
+      finish_step("the host was killed");
+    }
   }
 }
 
@@ -84,12 +89,13 @@ void Run::play() {
   constexpr int kMostAtOnce = 1000;
   for (int i = 0; i < kMostAtOnce && !over_; ++i) {
     if (time_s() - current().from_s > scripts_[step_].within_s) {
-      return fail({Trouble::Silent, fmt::format("not done within {:g} s", scripts_[step_].within_s)});
+      return give_up({Trouble::Silent, fmt::format("not done within {:g} s", scripts_[step_].within_s)});
     }
     if (action_ == list().size()) {
       if (!undoing_) {
         finish_step("done");
-        if (over_) return;
+        inject_faults();
+        if (over_ || killed_) return;
         continue;
       }
       ++current().tries;
@@ -128,13 +134,16 @@ void Run::advance(const ActionState& state) {
 
 void Run::fail(const Failed& failure) {
   const StepScript& script = scripts_[step_];
-  const bool in_time = time_s() - current().from_s <= script.within_s;
-  if (!undoing_ && in_time && current().tries < script.tries && !script.undo.empty()) {
+  if (!undoing_ && current().tries < script.tries && !script.undo.empty()) {
     undoing_ = true;
     action_ = 0;
     begun_ = false;
     return;
   }
+  give_up(failure);
+}
+
+void Run::give_up(const Failed& failure) {
   trouble_ = failure.trouble;
   finish_step(failure.sentence);
   over_ = true;
@@ -158,7 +167,7 @@ void Run::finish_step(const std::string& result) {
 }
 
 RunReport Run::report() {
-  const bus::Statistics statistics = bus_->statistics();
+  const bus::Statistics statistics = venue_.bus->statistics();
   report_.bus.frames = statistics.sent + statistics.received;
   if (stage_.world != nullptr) {
     const auto reply = stage_.world->ask(bench::AskTruth{});

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -15,6 +16,8 @@ namespace pinjaw::sequence {
 struct Venue {
   bus::Bus* bus = nullptr;          ///< not null
   bench::WorldPort* world = nullptr;  ///< nothing: the report says `"plant": null`
+  /// Loses a share (0..1) of all frames for so many seconds from now on; empty where the bus cannot.
+  std::function<void(double share, double seconds)> lose_frames;
 };
 
 /// Plays a script on the controllers, step by step, and writes down what happened. It has no clock: its caller steps
@@ -40,12 +43,15 @@ class Run {
 
  private:
   void note_states();
-  void check_kill();
+  /// Faults of the script that are due.
+  void inject_faults();
   void play();
   void begin_try();
   void advance(const ActionState& state);
   void finish_step(const std::string& result);
+  /// Undoes the try where there may be another, else gives up.
   void fail(const Failed& failure);
+  void give_up(const Failed& failure);
   [[nodiscard]] double time_s() const {
     return static_cast<double>(now_us_ - started_us_.value_or(now_us_)) * 1e-6;
   }
@@ -55,7 +61,8 @@ class Run {
   const model::Sequence& sequence_;
   std::vector<int> nodes_;
   std::vector<StepScript> scripts_;
-  bus::Bus* bus_;
+  Venue venue_;
+  std::vector<bool> injected_;
   jaw_client::Client client_;
   Stage stage_;
   RunReport report_;

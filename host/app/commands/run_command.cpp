@@ -9,6 +9,7 @@
 #include "host/app/commands/commands.hpp"
 #include "host/app/venue.hpp"
 #include "host/cell/cell_plan.hpp"
+#include "host/cell/read_cell.hpp"
 #include "host/config/read.hpp"
 #include "host/sequence/run.hpp"
 
@@ -20,6 +21,7 @@ constexpr double kLongestRunS = 24 * 3600.0;
 
 struct Options {
   std::string sequence;
+  std::string plan;
   std::string report;
   std::string log;
   bool dry = false;
@@ -34,26 +36,52 @@ struct Prepared {
   std::vector<sequence::StepScript> scripts;
 };
 
-/// The cell's best design, or the one the sequence names.
-std::optional<cell::CellDesign> choose_design(Context& context, const model::Sequence& sequence) {
+/// Designs of the cell from a plan that was written before; nothing where it is no such plan or of another cell.
+std::optional<std::vector<cell::CellDesign>> saved_designs(Context& context, const std::string& file,
+                                                           const model::Cell& cell, const planner::Scene& scene) {
+  auto plan = cell::read_cell_plan(file);
+  if (!plan) {
+    context.fail(plan.error(), "nothing was run");
+    return std::nullopt;
+  }
+  if (const auto fits = cell::made_for(*plan, cell, scene.part.sha256); !fits) {
+    context.fail(ExitCode::BadFile, fits.error().message);
+    return std::nullopt;
+  }
+  return std::move(plan->designs);
+}
+
+/// As many designs of the cell as are needed to find `wanted` among them.
+std::optional<std::vector<cell::CellDesign>> planned_designs(Context& context, const model::Cell& cell,
+                                                             const std::string& wanted) {
   cell::CellOptions options;
-  options.top = sequence.design == "best" ? 1 : 0;
-  auto plan = cell::make_cell_plan(sequence.cell, options, context.progress_sink());
+  options.top = wanted == "best" ? 1 : 0;
+  auto plan = cell::make_cell_plan(cell, options, context.progress_sink());
   if (!plan) {
     context.fail(ExitCode::BadFile, plan.error().message);
     return std::nullopt;
   }
-  const auto chosen = sequence.design == "best" ? plan->designs.begin()
-                                                : std::ranges::find(plan->designs, sequence.design, &cell::CellDesign::id);
-  if (chosen == plan->designs.end()) {
-    context.fail(ExitCode::No, plan->designs.empty() ? "no combination of designs fits all handoffs of the cell"
-                                                     : "the cell has no design " + sequence.design);
+  return std::move(plan->designs);
+}
+
+/// The cell's best design, or the one the sequence names.
+std::optional<cell::CellDesign> choose_design(Context& context, const Options& options,
+                                              const model::Sequence& sequence, const planner::Scene& scene) {
+  const auto designs = options.plan.empty() ? planned_designs(context, sequence.cell, sequence.design)
+                                            : saved_designs(context, options.plan, sequence.cell, scene);
+  if (!designs) return std::nullopt;
+  const auto chosen = sequence.design == "best" ? designs->begin()
+                                                : std::ranges::find(*designs, sequence.design, &cell::CellDesign::id);
+  if (chosen == designs->end()) {
+    context.fail(ExitCode::No, designs->empty() ? "no combination of designs fits all handoffs of the cell"
+                                                : "the cell has no design " + sequence.design);
     return std::nullopt;
   }
   return *chosen;
 }
 
-std::optional<Prepared> prepare(Context& context, const std::string& file) {
+std::optional<Prepared> prepare(Context& context, const Options& options) {
+  const std::string& file = options.sequence;
   auto sequence = config::read_sequence(file);
   if (!sequence) {
     context.fail(sequence.error(), "nothing was run");
@@ -64,7 +92,7 @@ std::optional<Prepared> prepare(Context& context, const std::string& file) {
     context.fail(ExitCode::BadFile, scene.error().message);
     return std::nullopt;
   }
-  auto design = choose_design(context, *sequence);
+  auto design = choose_design(context, options, *sequence, *scene);
   if (!design) return std::nullopt;
   auto crew = sequence::Crew::of(sequence->cell, *design, *scene);
   if (!crew) {
@@ -79,18 +107,13 @@ std::optional<Prepared> prepare(Context& context, const std::string& file) {
   return Prepared{std::move(*sequence), std::move(*scene), std::move(*design), std::move(*crew), std::move(*scripts)};
 }
 
-std::vector<Losses> losses_of(const model::Sequence& sequence) {
-  std::vector<Losses> losses;
-  for (const model::ScriptedFault& fault : sequence.faults) {
-    if (fault.drop_share > 0) losses.push_back({fault.at_s.value_or(0), fault.seconds, fault.drop_share});
-  }
-  return losses;
+bool drops_frames(const model::Sequence& sequence) {
+  return std::ranges::any_of(sequence.faults, [](const model::ScriptedFault& fault) { return fault.drop_share > 0; });
 }
 
 std::unique_ptr<Venue> open_venue(Context& context, const model::Sequence& sequence) {
-  const auto losses = losses_of(sequence);
   if (context.bus == "sim:") {
-    if (context.world.empty()) return open_sim_venue(sequence.cell, context.seed, losses);
+    if (context.world.empty()) return open_sim_venue(sequence.cell, context.seed);
     context.fail(ExitCode::Usage, "--world goes with --bus can:IFACE; sim: has a world of its own");
     return nullptr;
   }
@@ -99,7 +122,7 @@ std::unique_ptr<Venue> open_venue(Context& context, const model::Sequence& seque
     context.fail(ExitCode::Usage, "no such bus: " + context.bus + "; expected sim: or can:IFACE");
     return nullptr;
   }
-  if (!losses.empty()) {
+  if (drops_frames(sequence)) {
     context.fail(ExitCode::Usage, "the sequence drops frames, which only sim: can do");
     return nullptr;
   }
@@ -133,12 +156,16 @@ std::string summary_of(const sequence::RunReport& report) {
   return text + fmt::format("\n{}", report.result == sequence::RunResult::Done ? "done" : "aborted");
 }
 
-ExitCode code_of(const std::optional<sequence::Trouble>& trouble) {
+/// A part that was dropped is never a success, whatever the controllers said.
+ExitCode code_of(const sequence::RunReport& report, const std::optional<sequence::Trouble>& trouble) {
+  if (report.result == sequence::RunResult::Done) {
+    return report.plant && report.plant->dropped ? ExitCode::No : ExitCode::Done;
+  }
   if (!trouble) return ExitCode::No;  // the host was killed
   switch (*trouble) {
     case sequence::Trouble::ForceLimit: return ExitCode::ForceLimit;
     case sequence::Trouble::Silent: return ExitCode::Unavailable;
-    case sequence::Trouble::Refused:
+    case sequence::Trouble::Refused: return ExitCode::Refused;
     case sequence::Trouble::World: break;
   }
   return ExitCode::No;
@@ -155,7 +182,7 @@ void print_script(const Context& context, const Prepared& prepared) {
 }
 
 void run_sequence(Context& context, const Options& options) {
-  auto prepared = prepare(context, options.sequence);
+  auto prepared = prepare(context, options);
   if (!prepared) return;
   if (options.dry) return print_script(context, *prepared);
   const std::unique_ptr<Venue> venue = open_venue(context, prepared->sequence);
@@ -164,8 +191,9 @@ void run_sequence(Context& context, const Options& options) {
   // on a simulated bus the seed settles everything; on a real one each start is a host of its own
   const auto epoch = context.bus == "sim:" ? static_cast<std::uint16_t>(context.seed % 0xFFFF + 1)
                                            : static_cast<std::uint16_t>(std::random_device{}() % 0xFFFF + 1);
-  sequence::Run run(prepared->sequence, prepared->crew, std::move(prepared->scripts), {&venue->bus(), venue->world()},
-                    epoch);
+  const auto lose = [&venue](double share, double seconds) { venue->lose_frames(share, seconds); };
+  sequence::Run run(prepared->sequence, prepared->crew, std::move(prepared->scripts),
+                    {&venue->bus(), venue->world(), lose}, epoch);
   std::int64_t now_us = 0;
   while (!run.over() && static_cast<double>(now_us) < kLongestRunS * 1e6) {
     now_us = venue->tick_us();
@@ -177,7 +205,7 @@ void run_sequence(Context& context, const Options& options) {
   if (!options.report.empty() && !context.write_result(options.report, sequence::to_json(report))) return;
   if (!options.log.empty() && !context.write_result(options.log, venue->log())) return;
   context.print(context.json ? sequence::to_json(report) : summary_of(report));
-  if (report.result != sequence::RunResult::Done) context.exit_code = code_of(run.trouble());
+  context.exit_code = code_of(report, run.trouble());
 }
 
 }  // namespace
@@ -186,6 +214,8 @@ void add_run(CLI::App& app, Context& context) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("run", "play a scripted sequence on the controllers of a cell");
   command->add_option("SEQUENCE", options->sequence, "sequence file")->required();
+  command->add_option("--plan", options->plan, "cell plan of `pinjaw cell -o`; without it the cell is planned anew")
+      ->type_name("FILE");
   command->add_option("--report", options->report, "run report JSON")->type_name("FILE");
   command->add_option("--log", options->log, "every frame, as candump writes them")->type_name("FILE");
   command->add_flag("--dry", options->dry, "plan and check everything, speak to nobody");
