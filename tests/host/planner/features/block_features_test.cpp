@@ -169,7 +169,8 @@ TEST_P(TurnedPart, has_the_features_of_the_part_turned) {
   const Features turned = find_features(part_of(shape, rotation), stock());
   const geometry::Pose2 turn{angle_rad, Vector2d::Zero()};
   const int missing = without_equal(plain.features, turned.features, 1e-3, [&](const Trace& trace) -> Trace {
-    return {turn * trace.from_mm, turn * trace.middle_mm, turn * trace.to_mm, turn * trace.normal};
+    return {turn * trace.from_mm, turn * trace.middle_mm, turn * trace.to_mm, turn * trace.normal,
+            trace.length_mm};
   });
   EXPECT_EQ(missing, 0);
   EXPECT_EQ(plain.features.size(), turned.features.size());

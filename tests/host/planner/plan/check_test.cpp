@@ -20,7 +20,8 @@ TEST(Check, finds_every_claim_of_the_valve_housings_best_designs_true) {
   const Planned& valve = valve_pedestal();
   EXPECT_EQ(failures(check_plan(valve.plan, valve.scene)), std::vector<std::string>{});
   for (std::size_t i = 0; i < 30; ++i) {
-    EXPECT_EQ(failures(check_design(valve.plan, valve.scene, valve.plan.designs[i])), std::vector<std::string>{});
+    EXPECT_EQ(failures(check_design(valve.plan, valve.scene, valve.plan.designs[i])),
+              std::vector<std::string>{});
   }
 }
 
@@ -60,8 +61,9 @@ TEST(Check, catches_every_kind_of_lie_about_a_design) {
     ASSERT_NE(design.squeeze.critical, "spray[0]");
     lie.tell(design);
     const auto failed = failures(check_design(valve.plan, valve.scene, design));
-    EXPECT_TRUE(std::ranges::any_of(failed, [&](const std::string& f) { return f.find(lie.claim) != std::string::npos; }))
-        << lie.claim;
+    EXPECT_TRUE(std::ranges::any_of(failed, [&](const std::string& f) {
+      return f.find(lie.claim) != std::string::npos;
+    })) << lie.claim;
   }
 }
 

@@ -43,15 +43,17 @@ TEST(PlanJson, reads_back_as_the_same_plan) {
 TEST(PlanJson, has_the_fields_that_users_script_against) {
   const json document = json::parse(to_json(cam().plan));
   EXPECT_EQ(document.at("format"), "pinjaw-plan/1");
-  for (const char* key : {"features", "planar", "heights", "loadable", "not_wedging", "resistable", "strong"}) {
+  for (const char* key :
+       {"features", "planar", "heights", "loadable", "not_wedging", "resistable", "strong"}) {
     EXPECT_TRUE(document.at("funnel").at(key).is_number_integer()) << key;
   }
   const json& design = document.at("designs").at(0);
-  for (const char* key : {"id", "split", "jaw_separation_mm", "jaw_open_mm", "closure_margin", "part_pose", "pins", "squeeze"}) {
+  for (const char* key : {"id", "split", "jaw_separation_mm", "jaw_open_mm", "closure_margin", "part_pose",
+                          "pins", "squeeze"}) {
     EXPECT_TRUE(design.contains(key)) << key;
   }
-  for (const char* key : {"jaw", "col", "row", "length_mm", "top_z_mm", "contact_z_mm", "contact_mm", "normal",
-                          "foot_margin_mm", "feature"}) {
+  for (const char* key : {"jaw", "col", "row", "length_mm", "top_z_mm", "contact_z_mm", "contact_mm",
+                          "normal", "foot_margin_mm", "feature"}) {
     EXPECT_TRUE(design.at("pins").at(0).contains(key)) << key;
   }
   for (const char* key : {"required_n", "usable_n", "limit_n", "margin_n", "critical"}) {
@@ -66,13 +68,15 @@ TEST(PlanJson, tells_the_path_of_every_damaged_field) {
   document["designs"][1]["pins"][0]["col"] = "two";
   document["designs"][2]["squeeze"].erase("required_n");
   const std::string message = message_of(document);
-  EXPECT_NE(message.find("designs[1].pins[0].col: expected a whole number, found \"two\""), std::string::npos) << message;
+  EXPECT_NE(message.find("designs[1].pins[0].col: expected a whole number, found \"two\""), std::string::npos)
+      << message;
   EXPECT_NE(message.find("designs[2].squeeze.required_n: missing"), std::string::npos) << message;
   EXPECT_NE(message.find("2 mistakes"), std::string::npos) << message;
 }
 
 TEST(PlanJson, refuses_another_format) {
-  EXPECT_NE(message_of({{"format", "pinjaw-plan/9"}}).find("format: expected pinjaw-plan/1"), std::string::npos);
+  EXPECT_NE(message_of({{"format", "pinjaw-plan/9"}}).find("format: expected pinjaw-plan/1"),
+            std::string::npos);
 }
 
 TEST(PlanJson, survives_every_truncation) {
@@ -84,13 +88,16 @@ TEST(PlanJson, survives_every_truncation) {
 
 TEST(PlanJson, survives_every_field_being_replaced_by_something_else) {
   const json whole = json::parse(to_json(plan_of("cam", {.top = 1}).plan));
-  for (const auto& [path, value] : whole.flatten().items()) {
+  const json flat = whole.flatten();
+  for (const auto& [path, value] : flat.items()) {
+    if (path.starts_with("/disturbances/") && !path.starts_with("/disturbances/0/"))
+      continue;  // they are all alike
     for (const json& other : {json(nullptr), json("x"), json(-1e308), json::array(), json::object()}) {
       json damaged = whole;
       damaged[json::json_pointer(path)] = other;
-      static_cast<void>(read_plan(written("odd.json", damaged.dump())));  // an answer of either kind, no crash
+      static_cast<void>(
+          read_plan(written("odd.json", damaged.dump())));  // an answer of either kind, no crash
     }
-    if (path.size() > 60) break;
   }
 }
 

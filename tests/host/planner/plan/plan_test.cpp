@@ -20,7 +20,8 @@ TEST(Plan, of_the_valve_housing_loses_designs_in_no_phase_entirely) {
 }
 
 TEST(Plan, of_the_valve_housing_agrees_with_an_independent_reference) {
-  // a slow planner of other design finds some 17 000 planar fixtures with twins counted double, the best near 27 N
+  // a slow planner of other design finds some 17 000 planar fixtures with twins counted double, the best near
+  // 27 N
   const Plan& plan = valve_pedestal().plan;
   EXPECT_NEAR(2.0 * static_cast<double>(plan.funnel.planar), 17000, 2000);
   EXPECT_NEAR(plan.designs.front().squeeze.required_n, 27, 3);

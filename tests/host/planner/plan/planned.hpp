@@ -18,7 +18,8 @@ struct Planned {
 };
 
 inline Planned plan_of(const std::string& name, const PlanOptions& options) {
-  const auto task = config::read_task(std::filesystem::path(PINJAW_SOURCE_DIR) / "configs/tasks" / (name + ".yaml"));
+  const auto task =
+      config::read_task(std::filesystem::path(PINJAW_SOURCE_DIR) / "configs/tasks" / (name + ".yaml"));
   if (!task) throw std::runtime_error(base::render(task.error(), "no task"));
   auto scene = read_scene(*task);
   if (!scene) throw std::runtime_error(scene.error().message);
