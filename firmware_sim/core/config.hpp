@@ -5,7 +5,7 @@
 namespace pinjaw::core {
 
 /// What one controller's hardware is and can do, in the integers the core decides with. It never changes
-/// while the controller runs; the defaults are the 140 N class of the reliability figures, section 3.
+/// while the controller runs; the defaults are the 140 N class of docs/reliability.md, section 3.
 ///
 /// Forces are sums over both jaws in 0.1 N (dn), pressures gauge in mbar, separations in 10 um.
 struct Config {

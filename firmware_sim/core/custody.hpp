@@ -4,7 +4,7 @@
 
 #include "firmware_sim/core/state.hpp"
 
-/// The custody record and what is said of it (reliability figures, section 2.5). The order is everywhere the
+/// The custody record and what is said of it (docs/reliability.md 2.5). The order is everywhere the
 /// same: first the record is stored, then the bus hears the fact, then the valves follow.
 namespace pinjaw::core {
 

@@ -4,7 +4,7 @@
 
 #include "firmware_sim/core/state.hpp"
 
-/// The pressure loop (reliability figures, section 3, Control): pre-vent, approach at F_light, ramp at 0.5
+/// The pressure loop (docs/reliability.md 3, Control): pre-vent, approach at F_light, ramp at 0.5
 /// N/ms with feed-forward and a slow integral, hold with a dead band and the check valve shut.
 namespace pinjaw::core {
 

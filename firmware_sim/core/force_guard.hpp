@@ -6,7 +6,7 @@
 #include "firmware_sim/core/io.hpp"
 
 /// The last gate before the valves that can raise force. It knows no states and no commands: only the limit,
-/// sensor B, and what the rest of the core wants (reliability figures, sections 2.1 and 3).
+/// sensor B, and what the rest of the core wants (docs/reliability.md 2.1 and 3).
 namespace pinjaw::core {
 
 struct ForceGuard {

@@ -4,7 +4,7 @@
 
 #include "firmware_sim/core/state.hpp"
 
-/// The questions on which dangerous transitions hang, each a pure function of the state (reliability figures,
+/// The questions on which dangerous transitions hang, each a pure function of the state (docs/reliability.md,
 /// section 2.6).
 namespace pinjaw::core {
 

@@ -3,7 +3,7 @@
 #include "firmware_sim/core/state.hpp"
 #include "protocol/wire/codec.hpp"
 
-/// The service behind ISO-TP: WRITE, COMMIT, READBACK, IDENT, LOG (reliability figures, section 2.4).
+/// The service behind ISO-TP: WRITE, COMMIT, READBACK, IDENT, LOG (docs/reliability.md 2.4).
 namespace pinjaw::core {
 
 /// Takes a segment that the host sent to this node.

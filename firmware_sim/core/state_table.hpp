@@ -8,7 +8,7 @@
 
 /// The controller's state machine as data: every state by every event, nothing left to a default.
 ///
-/// Source: the reliability figures, section 2.6. An event's name contains its guard: `PeerHolds` is raised
+/// Source: docs/reliability.md, section 2.6. An event's name contains its guard: `PeerHolds` is raised
 /// only while G_peer holds, so the table needs no conditions, and a rule such as 'opens only after a
 /// decision' is a property of the table that the compiler checks.
 namespace pinjaw::core {

@@ -71,9 +71,8 @@ struct SensorParameters {
   double position_step_m = 1e-5;  // study: 10 um
 };
 
-/// One gripper's pneumatics, mechanics and sensors, in SI. 'Study' is the plant table of the project's
-/// reliability study (Nov 2026: catalogue figures of SMC SY3000, PHD GRS, Festo VPPE and MPA-S, and own
-/// lumped simulations).
+/// One gripper's pneumatics, mechanics and sensors, in SI. 'Study' is docs/reliability.md, section 3 (Nov
+/// 2026: catalogue figures of SMC SY3000, PHD GRS, Festo VPPE and MPA-S, and own lumped simulations).
 struct Parameters {
   AirParameters air;
   RegulatorParameters regulator;

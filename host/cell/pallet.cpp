@@ -1,6 +1,5 @@
 #include "host/cell/pallet.hpp"
 
-#include <fmt/format.h>
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
@@ -9,10 +8,10 @@
 #include <set>
 #include <variant>
 
-#include "host/base/sha256.hpp"
 #include "host/planner/features/features.hpp"
 #include "host/planner/heights/heights.hpp"
 #include "host/planner/loading/loading.hpp"
+#include "host/planner/plan/design_names.hpp"
 #include "host/planner/planar/planar.hpp"
 
 namespace pinjaw::cell {
@@ -55,25 +54,6 @@ Outcome design_of(const PalletFixture& pallet, const planner::Heights& heights, 
   auto design = planner::load(pallet.fixture, pins, kit, surroundings, options);
   if (!design) return design.error();
   return *design;
-}
-
-std::string id_of(const model::Design& design) {
-  std::string text = fmt::format("pallet {:.6f}", design.part_pose.theta_rad);
-  for (const model::PinDesign& pin : design.pins) {
-    text += fmt::format(" {}{},{}:{}", pin.hole.jaw == model::JawSide::Left ? 'L' : 'R', pin.hole.column,
-                        pin.hole.row, pin.feature);
-  }
-  constexpr std::size_t kDigits = 8;  // as a gripper's design
-  return base::sha256(text).substr(0, kDigits);
-}
-
-void name_designs(std::vector<model::Design>& designs) {
-  std::set<std::string> taken;
-  for (model::Design& design : designs) {
-    const std::string id = id_of(design);
-    design.id = id;
-    for (int again = 2; !taken.insert(design.id).second; ++again) design.id = fmt::format("{}-{}", id, again);
-  }
 }
 
 void keep(std::vector<Outcome>& outcomes, planner::Plan& plan) {
@@ -163,7 +143,7 @@ base::Expected<planner::Plan> make_pallet_plan(const model::Task& task, const pl
 
   std::vector<Outcome> outcomes = stand_and_load(pallets, task.kit, scene, options.loading_2d);
   keep(outcomes, plan);
-  name_designs(plan.designs);
+  planner::name_designs(plan.designs, "pallet");
   return plan;
 }
 

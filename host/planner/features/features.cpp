@@ -12,7 +12,7 @@ namespace pinjaw::planner {
 namespace {
 
 /// A feature shorter than eps is no edge of its own.
-constexpr double kLeastFeatureMm = kEpsMm;
+constexpr double kLeastFeatureMm = model::kEps_mm;
 
 /// A drawing shows a step from this height on.
 constexpr double kDrawnStepMm = 0.1;

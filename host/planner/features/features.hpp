@@ -4,12 +4,10 @@
 
 #include "host/model/feature.hpp"
 #include "host/model/kit.hpp"
+#include "host/model/tolerance.hpp"
 #include "host/part/part.hpp"
 
 namespace pinjaw::planner {
-
-/// eps of DESIGN 3.1 no. 1, on the radius of a pin.
-inline constexpr double kEpsMm = 0.02;
 
 /// Where the edges of a part went in phase 1.
 struct FeatureCounts {

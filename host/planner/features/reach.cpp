@@ -57,7 +57,7 @@ std::vector<Level> levels_of(const model::Feature& feature, const std::vector<do
       const double hi_mm = whole.lo + (step + 1) * whole.length() / steps;
       const double middle_mm = (lo_mm + hi_mm) / 2;
       const Vector2d inside_mm = geometry::point_at(feature.curve, middle_mm) -
-                                 kEpsMm * model::outward_normal_at(feature, middle_mm);
+                                 model::kEps_mm * model::outward_normal_at(feature, middle_mm);
       const auto hit = surface.lowest_above(inside_mm);
       const double z_mm = hit ? hit->point_mm.z() : surface.z_range_mm().hi;
       if (!levels.empty() && std::abs(levels.back().z_edge_mm - z_mm) < kSameHeightMm) {
@@ -152,7 +152,7 @@ void add_complement(std::vector<Interval> blocked, const Interval& whole, std::v
 std::vector<Interval> reach_of(const model::Feature& feature, const std::vector<double>& breaks_mm,
                                const geometry::Surface& surface, const model::PinStock& pins) {
   const Path path = path_of(feature, pins.radius_mm);
-  const double disc_mm = pins.radius_mm - kEpsMm;
+  const double disc_mm = pins.radius_mm - model::kEps_mm;
   const auto levels = levels_of(feature, breaks_mm, surface);
   const double highest_mm =
       std::ranges::max(levels, {}, &Level::z_edge_mm).z_edge_mm + pins.min_engagement_mm;

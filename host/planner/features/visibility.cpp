@@ -50,8 +50,8 @@ struct Edge {
 std::vector<Stretch> jumping_stretches(const geometry::Surface& surface, const Carrier& carrier,
                                        const geometry::Interval& edgelet_mm, double engagement_mm) {
   const double length_mm = edgelet_mm.length();
-  const Edge edge{surface, carrier, engagement_mm, std::min(kEpsMm, length_mm / 4)};
-  const double inset_mm = std::min(3 * kEpsMm, length_mm / 4);
+  const Edge edge{surface, carrier, engagement_mm, std::min(model::kEps_mm, length_mm / 4)};
+  const double inset_mm = std::min(3 * model::kEps_mm, length_mm / 4);
   const double first_mm = edgelet_mm.lo + inset_mm;
   const double last_mm = edgelet_mm.hi - inset_mm;
   const int steps = std::max(2, static_cast<int>(std::ceil((last_mm - first_mm) / kSampleStepMm)));

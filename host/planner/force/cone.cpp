@@ -13,7 +13,7 @@ constexpr double kPivot = 1e-9;         // of the entering column in basis coord
 constexpr double kFeasible = 1e-10;     // of |b|: artificials below this are 0
 constexpr double kUnresistable = 1e-9;  // |b| over the squeeze past which a load counts as unresistable
 constexpr int kRefresh = 12;            // pivots between fresh inverses (chosen)
-constexpr int kMaxPivots = 400;         // research: 23 to 30 are usual
+constexpr int kMaxPivots = 400;         // measured: 23 to 30 are usual
 
 }  // namespace
 

@@ -13,7 +13,7 @@ inline constexpr int kRows = 6;
 inline constexpr int kLanes = 8;     ///< rows padded with zeros
 inline constexpr int kColumns = 32;  ///< 8 contacts of 4 rays, padded with zero columns of cost 1
 inline constexpr int kMaxVertices =
-    256;  ///< chosen: 302 loads visit some 52 (research: 52 to 121); past it nothing more is kept
+    256;  ///< chosen: 302 loads visit some 52 (measured: 52 to 121); past it nothing more is kept
 inline constexpr int kMaxBases = 512;
 
 /// A and c of one grasp. Every cost is above 0, so that y = 0 is dual feasible.

@@ -19,7 +19,7 @@ constexpr int kLanePacks = kLanes / kWidth;
 constexpr int kColumnPacks = kColumns / kWidth;
 
 constexpr double kInfinity = __builtin_inf();
-// Chosen by comparison with quadruple precision (research: 1e-12 and 1e-13 change nothing; pivots of 1e-11 do
+// Chosen by comparison with quadruple precision (measured: 1e-12 and 1e-13 change nothing; pivots of 1e-11 do
 // harm).
 constexpr double kPrimalTolerance = 1e-10;  // of |b|
 constexpr double kPivotTolerance = 1e-9;    // of |rho|

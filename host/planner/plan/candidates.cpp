@@ -68,13 +68,15 @@ Outcome design_of(const PlanarFixture& fixture, const Heights& heights, const mo
   return *design;
 }
 
-std::vector<Outcome> stand_and_load(const std::vector<PlanarFixture>& fixtures, const model::Kit& kit, const Scene& scene,
-                                    const PlanOptions& options, const ProgressSink& progress) {
+std::vector<Outcome> stand_and_load(const std::vector<PlanarFixture>& fixtures, const model::Kit& kit,
+                                    const Scene& scene, const PlanOptions& options,
+                                    const ProgressSink& progress) {
   std::vector<geometry::Surface> others = scene.attached;
   others.insert(others.end(), scene.obstacles.begin(), scene.obstacles.end());
   const double plate_top = plate_top_mm(kit, scene.turned.surface, scene.attached);
   const Surroundings surroundings{&scene.turned.surface, others, plate_top};
-  const LoadingOptions loading{options.loading_2d ? SweepHeights::Infinite : SweepHeights::Pins, JawMotion::Closes};
+  const LoadingOptions loading{options.loading_2d ? SweepHeights::Infinite : SweepHeights::Pins,
+                               JawMotion::Closes};
   const Heights heights(scene.turned.surface, kit.pins, plate_top);
 
   std::vector<Outcome> outcomes(fixtures.size(), HeightLoss::NoEngagement);
@@ -88,8 +90,8 @@ std::vector<Outcome> stand_and_load(const std::vector<PlanarFixture>& fixtures, 
 
 }  // namespace
 
-base::Expected<Candidates> find_candidates(const model::Task& task, const Scene& scene, const PlanOptions& options,
-                                           const ProgressSink& progress) {
+base::Expected<Candidates> find_candidates(const model::Task& task, const Scene& scene,
+                                           const PlanOptions& options, const ProgressSink& progress) {
   Candidates candidates;
   if (progress) progress({"features", 0, 0});
   const Features features = find_features(scene.turned, task.kit.pins);

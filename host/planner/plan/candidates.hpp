@@ -16,7 +16,7 @@ struct Candidates {
 };
 
 /// Phases 1 to 4 for the pins of `task`'s kit on its part.
-base::Expected<Candidates> find_candidates(const model::Task& task, const Scene& scene, const PlanOptions& options,
-                                           const ProgressSink& progress);
+base::Expected<Candidates> find_candidates(const model::Task& task, const Scene& scene,
+                                           const PlanOptions& options, const ProgressSink& progress);
 
 }  // namespace pinjaw::planner

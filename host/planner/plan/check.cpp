@@ -18,9 +18,9 @@ namespace {
 using geometry::Vector2d;
 using geometry::Vector3d;
 
-constexpr double kLengthTolMm = 1e-6;   // chosen: plans state lengths to the last bit; poses lose some 1e-13
-constexpr double kHeightTolMm = 1e-4;   // chosen: a foot moved by kLengthTolMm on a steep facet
-constexpr double kForceTolN = 1e-6;     // chosen: the solver certifies 1e-9 relative
+constexpr double kLengthTolMm = 1e-6;  // chosen: plans state lengths to the last bit; poses lose some 1e-13
+constexpr double kHeightTolMm = 1e-4;  // chosen: a foot moved by kLengthTolMm on a steep facet
+constexpr double kForceTolN = 1e-6;    // chosen: the solver certifies 1e-9 relative
 constexpr double kUnitTol = 1e-9;
 
 /// Collects claims about one design.
@@ -32,8 +32,8 @@ class Report {
     claims_.push_back({subject_, std::move(what), holds, holds ? std::string() : std::move(found)});
   }
   void equal(const std::string& what, double stated, double recomputed, double tolerance) {
-    const bool holds = std::abs(stated - recomputed) <= tolerance ||
-                       (std::isinf(stated) && stated == recomputed);
+    const bool holds =
+        std::abs(stated - recomputed) <= tolerance || (std::isinf(stated) && stated == recomputed);
     claim(what, holds, fmt::format("stated {:.9g}, recomputed {:.9g}", stated, recomputed));
   }
   std::vector<Claim> take() { return std::move(claims_); }
@@ -80,7 +80,8 @@ void check_holes(const Plan& plan, const model::Design& design, Report& report) 
                fmt::format("two axes are {:.6f} mm apart", nearest_mm));
   const model::Interval range = kit.jaws.separation_mm;
   report.claim("the jaw separation is in the kit's range",
-               design.jaw_separation_mm >= range.lo - kLengthTolMm && design.jaw_separation_mm <= range.hi + kLengthTolMm,
+               design.jaw_separation_mm >= range.lo - kLengthTolMm &&
+                   design.jaw_separation_mm <= range.hi + kLengthTolMm,
                fmt::format("{:.6f} mm", design.jaw_separation_mm));
   report.equal("the jaws open as far as the kit lets them", design.jaw_open_mm,
                model::open_separation_mm(kit.jaws, design.jaw_separation_mm), kLengthTolMm);
@@ -91,11 +92,13 @@ void check_contacts(const Plan& plan, const Scene& scene, const model::Design& d
     const std::string name = "pin " + name_of(pin.hole);
     const Vector2d axis_mm = model::p_GHole_mm(plan.kit.grid, pin.hole, design.jaw_separation_mm);
     const Vector2d foot_mm = axis_mm + plan.kit.pins.radius_mm * pin.normal;
-    report.claim(name + " touches at its stated contact",
-                 (foot_mm - pin.contact_mm).norm() <= kLengthTolMm && std::abs(pin.normal.norm() - 1) <= kUnitTol,
-                 fmt::format("the pin's side is {:.9f} mm away", (foot_mm - pin.contact_mm).norm()));
+    report.claim(
+        name + " touches at its stated contact",
+        (foot_mm - pin.contact_mm).norm() <= kLengthTolMm && std::abs(pin.normal.norm() - 1) <= kUnitTol,
+        fmt::format("the pin's side is {:.9f} mm away", (foot_mm - pin.contact_mm).norm()));
     const double closing = pin.hole.jaw == model::JawSide::Left ? pin.normal.x() : -pin.normal.x();
-    report.claim(name + " pushes the part inwards", closing > 0, fmt::format("share of closing {:.6f}", closing));
+    report.claim(name + " pushes the part inwards", closing > 0,
+                 fmt::format("share of closing {:.6f}", closing));
 
     const Foot foot{p_PFoot_mm(design, pin), n_P(design, pin)};
     const double plate_mm = plate_top_mm(plan.kit, scene.turned.surface, scene.attached);
@@ -110,8 +113,8 @@ void check_contacts(const Plan& plan, const Scene& scene, const model::Design& d
   }
 }
 
-/// Multipliers, their sum 1, with which the four contacts' planar wrenches add to zero; the least of them is the
-/// closure margin, above 0 in strict form closure.
+/// Multipliers, their sum 1, with which the four contacts' planar wrenches add to zero; the least of them is
+/// the closure margin, above 0 in strict form closure.
 double closure_margin(const model::Design& design) {
   Eigen::Matrix<double, 3, 4> wrenches;
   Vector2d mean_mm = Vector2d::Zero();
@@ -145,7 +148,8 @@ PlanarFixture fixture_of(const Plan& plan, const model::Design& design) {
     row = std::min(row, pin.hole.row);
   }
   const model::Grid& grid = plan.kit.grid;
-  fixture.span_mm = design.jaw_separation_mm + 2 * grid.edge_offset_mm + (column[0] + column[1]) * grid.spacing_mm;
+  fixture.span_mm =
+      design.jaw_separation_mm + 2 * grid.edge_offset_mm + (column[0] + column[1]) * grid.spacing_mm;
   const Vector2d origin_mm =
       model::p_GHole_mm(grid, {model::JawSide::Left, column[0], row}, design.jaw_separation_mm);
   fixture.x_left_mm = design.part_pose.t_mm.x() - origin_mm.x();
@@ -172,14 +176,17 @@ void check_loading(const Plan& plan, const Scene& scene, const model::Design& de
   others.insert(others.end(), scene.obstacles.begin(), scene.obstacles.end());
   const Surroundings surroundings{&scene.turned.surface, others,
                                   plate_top_mm(plan.kit, scene.turned.surface, scene.attached)};
-  const LoadingOptions options{plan.loading_2d ? SweepHeights::Infinite : SweepHeights::Pins, JawMotion::Closes};
+  const LoadingOptions options{plan.loading_2d ? SweepHeights::Infinite : SweepHeights::Pins,
+                               JawMotion::Closes};
   const auto loaded = load(fixture, pins, plan.kit, surroundings, options);
   report.claim("the open gripper comes along z and closes without touching anything", loaded.has_value(),
                loaded ? std::string() : std::string(to_string(loaded.error())));
-  if (loaded) report.equal("jaw separation", design.jaw_separation_mm, loaded->jaw_separation_mm, kLengthTolMm);
+  if (loaded)
+    report.equal("jaw separation", design.jaw_separation_mm, loaded->jaw_separation_mm, kLengthTolMm);
 }
 
-/// The contact forces under the critical load are in equilibrium with it, inside friction, and squeeze as stated.
+/// The contact forces under the critical load are in equilibrium with it, inside friction, and squeeze as
+/// stated.
 void check_balance(const Grasp& grasp, const model::Design& design, const model::Wrench& wrench,
                    model::FrictionModel model, SqueezeSolver& solver, Report& report) {
   const auto forces = solver.balancing_forces_n(wrench, model);
@@ -199,12 +206,14 @@ void check_balance(const Grasp& grasp, const model::Design& design, const model:
     worst_n = std::max({worst_n, -pressing_n, (force - pressing_n * normal).norm() - grasp.mu * pressing_n});
   }
   constexpr double kLeverMm = 25;
-  report.claim("they are in equilibrium with it",
-               sum.head<3>().norm() <= kForceTolN && sum.tail<3>().norm() <= kForceTolN * kLeverMm,
-               fmt::format("{:.3g} N and {:.3g} N mm are left over", sum.head<3>().norm(), sum.tail<3>().norm()));
+  report.claim(
+      "they are in equilibrium with it",
+      sum.head<3>().norm() <= kForceTolN && sum.tail<3>().norm() <= kForceTolN * kLeverMm,
+      fmt::format("{:.3g} N and {:.3g} N mm are left over", sum.head<3>().norm(), sum.tail<3>().norm()));
   report.claim("each presses and stays inside its friction cone", worst_n <= kForceTolN,
                fmt::format("one is {:.3g} N outside", worst_n));
-  report.equal("their squeeze is the required one", design.squeeze.required_n, std::max(0.0, squeeze_n), kForceTolN);
+  report.equal("their squeeze is the required one", design.squeeze.required_n, std::max(0.0, squeeze_n),
+               kForceTolN);
 }
 
 void check_force(const Plan& plan, const model::Design& design, Report& report) {
@@ -230,10 +239,12 @@ void check_force(const Plan& plan, const model::Design& design, Report& report) 
   report.claim("every disturbance can be resisted", all_resistable, "one cannot");
   report.equal("required squeeze over all disturbances", design.squeeze.required_n, needed_n, kForceTolN);
   if (!plan.disturbances.empty()) {
-    report.equal("required squeeze of the critical disturbance", design.squeeze.required_n, critical_n, kForceTolN);
+    report.equal("required squeeze of the critical disturbance", design.squeeze.required_n, critical_n,
+                 kForceTolN);
   }
   report.equal("usable squeeze", design.squeeze.usable_n, plan.kit.actuator.usable_squeeze_n(), kForceTolN);
-  report.equal("margin", design.squeeze.margin_n, design.squeeze.usable_n - design.squeeze.required_n, kForceTolN);
+  report.equal("margin", design.squeeze.margin_n, design.squeeze.usable_n - design.squeeze.required_n,
+               kForceTolN);
   report.claim("the usable force holds it", design.squeeze.margin_n >= 0, "the margin is negative");
 }
 
@@ -243,9 +254,10 @@ std::vector<Claim> check_plan(const Plan& plan, const Scene& scene) {
   Report report("");
   report.claim("the part's file is the one that was planned", plan.part.sha256 == scene.part.sha256,
                "its SHA-256 is " + scene.part.sha256);
-  report.claim("the designs come smallest required squeeze first",
-               std::ranges::is_sorted(plan.designs, {}, [](const model::Design& d) { return d.squeeze.required_n; }),
-               "they do not");
+  report.claim(
+      "the designs come smallest required squeeze first",
+      std::ranges::is_sorted(plan.designs, {}, [](const model::Design& d) { return d.squeeze.required_n; }),
+      "they do not");
   const Funnel& f = plan.funnel;
   report.claim("no phase of the funnel gains fixtures",
                f.planar >= f.heights && f.heights >= f.loadable && f.loadable >= f.not_wedging &&
@@ -267,7 +279,8 @@ std::vector<Claim> check_design(const Plan& plan, const Scene& scene, const mode
   check_contacts(plan, scene, design, report);
   const double margin = closure_margin(design);
   report.equal("closure margin", design.closure_margin, margin, 1e-6);
-  report.claim("the pins hold the part in strict planar form closure", margin > 0, fmt::format("margin {:.3g}", margin));
+  report.claim("the pins hold the part in strict planar form closure", margin > 0,
+               fmt::format("margin {:.3g}", margin));
   check_loading(plan, scene, design, report);
   check_force(plan, design, report);
   return report.take();

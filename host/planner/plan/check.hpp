@@ -19,7 +19,8 @@ struct Claim {
 /// Recomputes what the plan says as a whole: the part's bytes, the order of the designs, the funnel.
 std::vector<Claim> check_plan(const Plan& plan, const Scene& scene);
 
-/// Recomputes every claim of one design from its stated numbers: holes, contacts, closure, heights, loading, force.
+/// Recomputes every claim of one design from its stated numbers: holes, contacts, closure, heights, loading,
+/// force.
 std::vector<Claim> check_design(const Plan& plan, const Scene& scene, const model::Design& design);
 
 }  // namespace pinjaw::planner

@@ -11,7 +11,9 @@ using nlohmann::ordered_json;
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-ordered_json pair_json(double first, double second) { return ordered_json::array({first, second}); }
+ordered_json pair_json(double first, double second) {
+  return ordered_json::array({first, second});
+}
 
 geometry::Interval read_interval(const JsonField& field) {
   const std::vector<double> ends = field.numbers(2);
@@ -39,7 +41,8 @@ ordered_json pin_json(const model::PinDesign& pin) {
 
 model::PinDesign read_pin(const JsonField& field) {
   model::PinDesign pin;
-  pin.hole.jaw = field.at("jaw").one_of({"left", "right"}) == 0 ? model::JawSide::Left : model::JawSide::Right;
+  pin.hole.jaw =
+      field.at("jaw").one_of({"left", "right"}) == 0 ? model::JawSide::Left : model::JawSide::Right;
   pin.hole.column = static_cast<int>(field.whole("col"));
   pin.hole.row = static_cast<int>(field.whole("row"));
   pin.length_mm = field.number("length_mm");
@@ -52,6 +55,12 @@ model::PinDesign read_pin(const JsonField& field) {
   return pin;
 }
 
+double not_negative(const JsonField& field) {
+  const double value = field.number();
+  if (value < 0) field.mistake("expected 0 or a number above");
+  return value;
+}
+
 double positive(const JsonField& field) {
   const double value = field.number();
   if (value <= 0) field.mistake("expected a number above 0");
@@ -60,7 +69,9 @@ double positive(const JsonField& field) {
 
 }  // namespace
 
-ordered_json vector_json(const model::Vector3d& v) { return ordered_json::array({v.x(), v.y(), v.z()}); }
+ordered_json vector_json(const model::Vector3d& v) {
+  return ordered_json::array({v.x(), v.y(), v.z()});
+}
 
 ordered_json pose_json(const geometry::Pose2& pose) {
   return {{"x_mm", pose.t_mm.x()}, {"y_mm", pose.t_mm.y()}, {"theta_deg", pose.theta_rad / kDegree}};
@@ -142,7 +153,8 @@ model::Kit read_kit_json(const JsonField& field) {
   kit.grid.edge_offset_mm = grid.number("edge_offset_mm");
   const JsonField pins = field.at("pins");
   kit.pins.radius_mm = positive(pins.at("radius_mm"));
-  for (const JsonField& length : pins.at("lengths_mm").list()) kit.pins.lengths_mm.push_back(positive(length));
+  for (const JsonField& length : pins.at("lengths_mm").list())
+    kit.pins.lengths_mm.push_back(positive(length));
   kit.pins.min_engagement_mm = pins.number("min_engagement_mm");
   kit.pins.protrusion_mm = pins.number("protrusion_mm");
   kit.pins.clearance_mm = pins.number("clearance_mm");
@@ -152,7 +164,7 @@ model::Kit read_kit_json(const JsonField& field) {
   kit.jaws.plate_gap_mm = jaws.number("plate_gap_mm");
   kit.jaws.plate_thickness_mm = jaws.number("plate_thickness_mm");
   if (jaws.has("opening_mm")) kit.jaws.opening_mm = jaws.number("opening_mm");
-  kit.actuator.max_squeeze_n = positive(field.at("actuator").at("max_squeeze_n"));
+  kit.actuator.max_squeeze_n = not_negative(field.at("actuator").at("max_squeeze_n"));
   kit.actuator.force_uncertainty_n = field.at("actuator").number("force_uncertainty_n");
   const JsonField grip = field.at("grip");
   kit.grip = {grip.number("light_n"), grip.number("separation_tol_mm"), grip.number("slip_tol_mm"),
@@ -163,7 +175,8 @@ model::Kit read_kit_json(const JsonField& field) {
 model::Design read_design(const JsonField& field) {
   model::Design design;
   design.id = field.text("id");
-  const std::vector<model::Split> splits = {model::Split::TwoTwo, model::Split::ThreeOne, model::Split::OneThree};
+  const std::vector<model::Split> splits = {model::Split::TwoTwo, model::Split::ThreeOne,
+                                            model::Split::OneThree};
   design.split = splits[field.at("split").one_of({"2+2", "3+1", "1+3"})];
   design.jaw_separation_mm = field.number("jaw_separation_mm");
   design.jaw_open_mm = field.number("jaw_open_mm");

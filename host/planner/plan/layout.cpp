@@ -8,7 +8,9 @@ namespace pinjaw::planner {
 
 namespace {
 
-std::int64_t micro(double value) { return std::llround(value * 1e6); }
+std::int64_t micro(double value) {
+  return std::llround(value * 1e6);
+}
 
 template <class Whole>
 Whole scaled(double value, double unit) {
@@ -17,7 +19,8 @@ Whole scaled(double value, double unit) {
 
 base::Expected<wire::LayoutPin> pin_of(const model::PinDesign& pin) {
   constexpr double kMostLengthMm = 655.35;
-  if (pin.hole.column > 127 || pin.hole.row > 127) return base::failure("a layout holds holes up to 127, 127");
+  if (pin.hole.column > 127 || pin.hole.row > 127)
+    return base::failure("a layout holds holes up to 127, 127");
   if (pin.length_mm > kMostLengthMm) return base::failure("a layout holds pins up to 655 mm");
   return wire::LayoutPin{pin.hole.jaw == model::JawSide::Left ? wire::Jaw::Left : wire::Jaw::Right,
                          static_cast<std::int8_t>(pin.hole.column), static_cast<std::int8_t>(pin.hole.row),
@@ -32,7 +35,8 @@ base::Expected<void> sendable(const model::Kit& kit, const model::Design& design
                                      kit.actuator.max_squeeze_n, most_n));
   }
   if (design.jaw_open_mm > most_mm) {
-    return base::failure(fmt::format("the jaws open to {} mm; the bus carries up to {} mm", design.jaw_open_mm, most_mm));
+    return base::failure(
+        fmt::format("the jaws open to {} mm; the bus carries up to {} mm", design.jaw_open_mm, most_mm));
   }
   if (design.pins.size() > wire::kMaxPins) return base::failure("a layout holds up to 16 pins");
   return {};
@@ -42,8 +46,8 @@ void set_forces(const LayoutSource& source, wire::Layout& layout) {
   layout.f_limit_dn = wire::limit_dn(micro(source.kit.actuator.max_squeeze_n));
   if (source.passive) return;
   layout.f_light_dn = wire::requirement_dn(micro(source.kit.grip.light_n));
-  layout.f_required_dn =
-      wire::layout_requirement_dn(wire::requirement_dn(micro(source.design.squeeze.required_n)), layout.f_light_dn);
+  layout.f_required_dn = wire::layout_requirement_dn(
+      wire::requirement_dn(micro(source.design.squeeze.required_n)), layout.f_light_dn);
 }
 
 }  // namespace

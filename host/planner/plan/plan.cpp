@@ -1,40 +1,18 @@
 #include "host/planner/plan/plan.hpp"
 
-#include <fmt/format.h>
 #include <tbb/global_control.h>
 
 #include <algorithm>
 #include <optional>
-#include <set>
 
 #include "host/base/random.hpp"
-#include "host/base/sha256.hpp"
 #include "host/planner/force/force.hpp"
 #include "host/planner/plan/candidates.hpp"
+#include "host/planner/plan/design_names.hpp"
 
 namespace pinjaw::planner {
 
 namespace {
-
-/// Names a design by what it is, not by its rank: its pins, what they touch and how the part lies.
-std::string id_of(const model::Design& design) {
-  std::string text = fmt::format("{} {:.6f}", model::to_string(design.split), design.part_pose.theta_rad);
-  for (const model::PinDesign& pin : design.pins) {
-    text += fmt::format(" {}{},{}:{}", pin.hole.jaw == model::JawSide::Left ? 'L' : 'R', pin.hole.column, pin.hole.row,
-                        pin.feature);
-  }
-  constexpr std::size_t kDigits = 8;  // chosen: short to type; 10^4 designs collide once in 80 plans, told apart below
-  return base::sha256(text).substr(0, kDigits);
-}
-
-void name_designs(std::vector<model::Design>& designs) {
-  std::set<std::string> taken;
-  for (model::Design& design : designs) {
-    const std::string id = id_of(design);
-    design.id = id;
-    for (int again = 2; !taken.insert(design.id).second; ++again) design.id = fmt::format("{}-{}", id, again);
-  }
-}
 
 struct Loads {
   std::vector<model::Disturbance> disturbances;
@@ -76,7 +54,8 @@ void judge(std::vector<model::Design> designs, const std::vector<ForceVerdict>& 
     ++plan.funnel.strong;
     const auto& holds = std::get<Holds>(verdict);
     const double usable_n = plan.kit.actuator.usable_squeeze_n();
-    designs[i].squeeze = {holds.required_n, usable_n, plan.kit.actuator.max_squeeze_n, usable_n - holds.required_n,
+    designs[i].squeeze = {holds.required_n, usable_n, plan.kit.actuator.max_squeeze_n,
+                          usable_n - holds.required_n,
                           plan.disturbances.empty() ? "none" : plan.disturbances[holds.critical].name};
     plan.designs.push_back(std::move(designs[i]));
   }
@@ -111,7 +90,8 @@ base::Expected<Plan> make_plan(const model::Task& task, const Scene& scene, cons
 
   Plan plan;
   plan.task = task.name;
-  plan.part = {task.part.file.string(), scene.part.sha256, task.part.up, scene.part.mass_kg, scene.part.centroid_mm};
+  plan.part = {task.part.file.string(), scene.part.sha256, task.part.up, scene.part.mass_kg,
+               scene.part.centroid_mm};
   plan.kit = task.kit;
   plan.side = task.side;
   plan.obstacles = task.obstacles;
@@ -124,7 +104,7 @@ base::Expected<Plan> make_plan(const model::Task& task, const Scene& scene, cons
   plan.funnel = candidates->funnel;
   plan.losses = std::move(candidates->losses);
 
-  name_designs(candidates->designs);
+  name_designs(candidates->designs, "gripper");
   std::vector<Grasp> grasps;
   grasps.reserve(candidates->designs.size());
   for (const model::Design& design : candidates->designs) grasps.push_back(grasp_of(design, task.friction));

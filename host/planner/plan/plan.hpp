@@ -74,8 +74,8 @@ struct Progress {
 };
 using ProgressSink = std::function<void(const Progress&)>;
 
-/// Phases 1 to 5 for `task` in its scene (BB 3.2). A plan without designs is a legitimate answer; a Failure tells why
-/// the task cannot be planned at all. The result does not depend on the number of threads.
+/// Phases 1 to 5 for `task` in its scene (BB 3.2). A plan without designs is a legitimate answer; a Failure
+/// tells why the task cannot be planned at all. The result does not depend on the number of threads.
 base::Expected<Plan> make_plan(const model::Task& task, const Scene& scene, const PlanOptions& options,
                                const ProgressSink& progress = {});
 

@@ -4,6 +4,7 @@
 
 #include "host/base/files.hpp"
 #include "host/base/json_fields.hpp"
+#include "host/base/json_places.hpp"
 #include "host/planner/plan/json_values.hpp"
 
 namespace pinjaw::planner {
@@ -16,15 +17,16 @@ using nlohmann::ordered_json;
 constexpr const char* kFormat = "pinjaw-plan/1";
 
 ordered_json funnel_json(const Funnel& funnel) {
-  return {{"features", funnel.features},         {"planar", funnel.planar},
-          {"heights", funnel.heights},           {"loadable", funnel.loadable},
-          {"not_wedging", funnel.not_wedging},   {"resistable", funnel.resistable},
-          {"strong", funnel.strong}};
+  return {
+      {"features", funnel.features}, {"planar", funnel.planar},           {"heights", funnel.heights},
+      {"loadable", funnel.loadable}, {"not_wedging", funnel.not_wedging}, {"resistable", funnel.resistable},
+      {"strong", funnel.strong}};
 }
 
 Funnel read_funnel(const JsonField& field) {
-  return {field.whole("features"), field.whole("planar"),      field.whole("heights"), field.whole("loadable"),
-          field.whole("not_wedging"), field.whole("resistable"), field.whole("strong")};
+  return {field.whole("features"), field.whole("planar"),      field.whole("heights"),
+          field.whole("loadable"), field.whole("not_wedging"), field.whole("resistable"),
+          field.whole("strong")};
 }
 
 ordered_json disturbances_json(const Plan& plan) {
@@ -83,9 +85,11 @@ std::string to_json(const Plan& plan) {
   document["side"] = plan.side == model::Side::Below ? "below" : "above";
   document["loading"] = plan.loading_2d ? "2d" : "3d";
   if (!plan.obstacles.empty()) document["obstacles"] = obstacles_json(plan.obstacles);
-  if (plan.attached) document["attached"] = {{"file", plan.attached->file.string()}, {"base", plan.attached->base}};
-  document["friction"] = {{"mu", plan.friction},
-                          {"model", plan.friction_model == model::FrictionModel::Pyramid ? "pyramid" : "cone"}};
+  if (plan.attached)
+    document["attached"] = {{"file", plan.attached->file.string()}, {"base", plan.attached->base}};
+  document["friction"] = {
+      {"mu", plan.friction},
+      {"model", plan.friction_model == model::FrictionModel::Pyramid ? "pyramid" : "cone"}};
   document["random"] = plan.random_algorithm;
   document["disturbances"] = disturbances_json(plan);
   document["funnel"] = funnel_json(plan.funnel);
@@ -105,7 +109,8 @@ base::Checked<Plan> read_plan(const std::filesystem::path& path) {
   base::Diagnostics mistakes;
   const JsonField top(&*document, "", &name, &mistakes);
   if (top.text("format") != kFormat) {
-    return tl::unexpected(base::Diagnostics({{name, 0, 0}, "format", std::string("expected ") + kFormat}));
+    base::Diagnostics other_kind({{name, 0, 0}, "format", std::string("expected ") + kFormat});
+    return tl::unexpected(base::placed_in_json(other_kind, *bytes));
   }
   Plan plan;
   plan.task = top.text("task");
@@ -127,7 +132,7 @@ base::Checked<Plan> read_plan(const std::filesystem::path& path) {
   plan.disturbances = read_disturbances(top.at("disturbances"));
   plan.funnel = read_funnel(top.at("funnel"));
   for (const JsonField& design : top.at("designs").list()) plan.designs.push_back(read_design(design));
-  if (!mistakes.empty()) return tl::unexpected(mistakes);
+  if (!mistakes.empty()) return tl::unexpected(base::placed_in_json(mistakes, *bytes));
   return plan;
 }
 

@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "host/planner/planar/column_shifts.hpp"
 #include "host/planner/plan/json_values.hpp"
+#include "host/planner/planar/column_shifts.hpp"
 
 namespace pinjaw::planner {
 
@@ -35,7 +35,9 @@ ordered_json fixture_json(const PlanarFixture& fixture, const std::vector<model:
           {"pins", pins}};
 }
 
-ordered_json point_json(const geometry::Vector2d& p) { return ordered_json::array({p.x(), p.y()}); }
+ordered_json point_json(const geometry::Vector2d& p) {
+  return ordered_json::array({p.x(), p.y()});
+}
 
 ordered_json curve_json(const geometry::Curve& curve) {
   if (const auto* segment = std::get_if<geometry::Segment>(&curve)) {
@@ -55,7 +57,8 @@ std::string to_json(const std::vector<PlanarFixture>& fixtures, const std::vecto
                     const model::Kit& kit) {
   ordered_json document = {{"format", "pinjaw-planar/1"}, {"count", fixtures.size()}};
   document["fixtures"] = ordered_json::array();
-  for (const PlanarFixture& fixture : fixtures) document["fixtures"].push_back(fixture_json(fixture, features, kit));
+  for (const PlanarFixture& fixture : fixtures)
+    document["fixtures"].push_back(fixture_json(fixture, features, kit));
   return document.dump(1) + "\n";
 }
 

@@ -11,14 +11,14 @@ namespace pinjaw::planner {
 
 /// A task's part and what is around it, as the files say it.
 struct Scene {
-  part::Part part;                             ///< part frame
-  part::Part turned;                           ///< as its gripper sees it
-  std::vector<geometry::Surface> attached;     ///< turned; solids beside the base part
-  std::vector<geometry::Surface> obstacles;    ///< turned
+  part::Part part;                           ///< part frame
+  part::Part turned;                         ///< as its gripper sees it
+  std::vector<geometry::Surface> attached;   ///< turned; solids beside the base part
+  std::vector<geometry::Surface> obstacles;  ///< turned
 };
 
-/// Reads the part, what is attached to it and the obstacles of a task. Attached solids that do not stand with the
-/// part must be given in the part's own file axes.
+/// Reads the part, what is attached to it and the obstacles of a task. Attached solids that do not stand with
+/// the part must be given in the part's own file axes.
 base::Expected<Scene> read_scene(const model::Task& task);
 
 }  // namespace pinjaw::planner

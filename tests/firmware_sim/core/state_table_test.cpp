@@ -17,7 +17,7 @@ struct Row {
 
 using enum wire::State;
 
-/// The reliability figures' table 2.6, row by row: every change of state there is, and no other.
+/// docs/reliability.md, table 2.6, row by row: every change of state there is, and no other.
 const std::vector<Row>& specified() {
   static const std::vector<Row> rows = {
       {Boot, Event::BootLoaded, Loaded},

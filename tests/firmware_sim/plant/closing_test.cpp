@@ -2,7 +2,7 @@
 
 #include "tests/firmware_sim/plant/stand.hpp"
 
-// The rows of the reliability study's table, 4 mm gap a jaw, k = 4e6 N/m: a model check within a factor.
+// The rows of the table of docs/reliability.md, 4 mm gap a jaw, k = 4e6 N/m: a model check within a factor.
 namespace pinjaw::plant {
 namespace {
 

@@ -43,7 +43,7 @@ struct Stand {
   }
 };
 
-/// The gripper of the reliability study's table: 7 mm of stroke, the part 4 mm from each jaw.
+/// The gripper of the table of docs/reliability.md: 7 mm of stroke, the part 4 mm from each jaw.
 inline Stand study_stand() {
   Stand stand;
   stand.parameters = parameters_for({.max_squeeze_n = 140, .max_separation_m = 0.014});

@@ -75,7 +75,7 @@ class ExactRays {
   }
 
   double jump_mm(const Sample& at) {
-    const Vector2d aside = kEpsMm * Vector2d(at.tangent.y(), -at.tangent.x());
+    const Vector2d aside = model::kEps_mm * Vector2d(at.tangent.y(), -at.tangent.x());
     const double right_mm = lowest_z_mm(at.p_mm + aside);
     const double left_mm = lowest_z_mm(at.p_mm - aside);
     return right_mm == left_mm ? 0 : std::abs(right_mm - left_mm);

@@ -31,10 +31,10 @@ double room_mm(const part::Part& part, const model::Feature& feature, double alo
                const model::PinStock& pins) {
   const Vector2d foot_mm = geometry::point_at(feature.curve, along_mm);
   const Vector2d normal = model::outward_normal_at(feature, along_mm);
-  const auto edge = part.surface.lowest_above(foot_mm - kEpsMm * normal);
+  const auto edge = part.surface.lowest_above(foot_mm - model::kEps_mm * normal);
   if (!edge) return -1;
   const Vector2d center_mm = foot_mm + pins.radius_mm * normal;
-  const geometry::Sweep disc{center_mm, center_mm, pins.radius_mm - kEpsMm};
+  const geometry::Sweep disc{center_mm, center_mm, pins.radius_mm - model::kEps_mm};
   return part.surface.lowest_z_mm(disc) - edge->point_mm.z() - pins.min_engagement_mm;
 }
 

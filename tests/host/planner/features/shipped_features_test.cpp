@@ -75,9 +75,9 @@ TEST(GlueGun, has_the_smooth_edge_above_its_fillet_as_outline) {
     const double middle_mm = geometry::length_mm(feature.curve) / 2;
     const geometry::Vector2d point_mm = geometry::point_at(feature.curve, middle_mm);
     const geometry::Vector2d normal = model::outward_normal_at(feature, middle_mm);
-    const auto edge = part.surface.lowest_above(point_mm - kEpsMm * normal);
+    const auto edge = part.surface.lowest_above(point_mm - model::kEps_mm * normal);
     ASSERT_TRUE(edge);
-    const bool outermost = !part.surface.lowest_above(point_mm + kEpsMm * normal);
+    const bool outermost = !part.surface.lowest_above(point_mm + model::kEps_mm * normal);
     if (outermost && edge->point_mm.z() > 4 && edge->point_mm.z() < 5) outline_found = true;
   }
   EXPECT_TRUE(outline_found);
