@@ -31,12 +31,11 @@ class Writer {
     script.name = "set up";
     for (Member& member : crew_.members()) {
       const std::uint8_t node = member.node();
-      const std::uint32_t crc = wire::layout_crc_of(member.layout());
       script.actions.push_back(operate("send the layout", node, [node, layout = member.layout()](auto& client) {
         client.permit(node, true);
         client.send_layout(node, layout);
       }));
-      script.actions.push_back(operate("arm", node, [node, crc](auto& client) { client.arm(node, crc); }));
+      script.actions.push_back(arm(member));
     }
     return script;
   }
@@ -98,6 +97,8 @@ class Writer {
     script_.actions.push_back(squeeze(taker));
     script_.actions.push_back(until(fmt::format("{} does not let go", step.from), kSettle_us, script_.reached));
     script_.undo = {
+        attempt(arm(taker)),  // a silence may have ended the sessions
+        attempt(arm(*holder_)),
         attempt(operate("abort", receiver, [receiver](auto& client) { client.abort(receiver); })),
         attempt(operate("abort", giver, [giver](auto& client) { client.abort(giver); })),
         attempt(until("the giver holds again", kSettle_us, [giver, receiver](const jaw_client::Client& client) {
@@ -144,6 +145,11 @@ class Writer {
   base::Expected<void> add_pause(double seconds) {
     script_.actions.push_back(pause(seconds));
     return {};
+  }
+
+  static Action arm(const Member& member) {
+    const std::uint32_t crc = wire::layout_crc_of(member.layout());
+    return operate("arm", member.node(), [node = member.node(), crc](auto& client) { client.arm(node, crc); });
   }
 
   /// A station that does not grip takes part with no force: its seats are what must be stable.
