@@ -104,7 +104,7 @@ std::string features_svg(const FeaturesDrawing& drawing) {
   svg += "</g>\n<g font-family=\"sans-serif\" font-size=\"1.6\" text-anchor=\"middle\" fill=\"#333\">\n";
   for (const model::Feature& feature : drawing.features) svg += feature_label(feature);
   svg += fmt::format(
-      "</g>\n<g font-family=\"sans-serif\" font-size=\"3\" fill=\"#000\" transform=\"translate({:.3f} {:.3f})\">\n"
+      "</g>\n<g font-family=\"sans-serif\" font-size=\"2.6\" fill=\"#000\" transform=\"translate({:.3f} {:.3f})\">\n"
       "<path d=\"M0 0 h50 M0 -1.5 v3 M50 -1.5 v3\" stroke=\"#000\" stroke-width=\"0.3\"/><text x=\"52\" y=\"1\">50 mm</text>\n"
       "<circle cx=\"72\" cy=\"0\" r=\"{:.4f}\" fill=\"none\" stroke=\"#000\" stroke-width=\"0.3\"/>\n"
       "<text x=\"0\" y=\"6.5\">{}: {} features; blue: a closed pin has room</text>\n</g>\n</svg>\n",
