@@ -40,12 +40,28 @@ class Context {
   /// Reports every mistake of the input files; exit code 3.
   void fail(const base::Diagnostics& mistakes, std::string_view consequence);
 
-  /// Writes the result whole to `path`, or to stdout where it is empty or "-". False, with exit code 3, where it
-  /// cannot be written.
+  /// Writes the result whole to `path`, or to stdout where it is empty or "-". False, with exit code 3, where
+  /// it cannot be written.
   bool write_result(const std::filesystem::path& path, std::string_view bytes);
+
+  /// The one result of a command that makes a document. With `path` the document goes there and `summary`
+  /// (the document itself with --json) to stdout; without, the document goes to stdout and the summary is a
+  /// remark. False, with exit code 3, where the file cannot be written.
+  bool deliver(const std::filesystem::path& path, std::string_view document, std::string_view summary);
+
+  /// Tells in time, before long work, that `path` cannot be written, or is `input` itself; exit code 3 or 2.
+  bool can_write(const std::filesystem::path& path, const std::filesystem::path& input = {});
+
+  /// Hands on what is left of the result; exit code 3 where stdout did not take it all.
+  void finish();
 
   /// Shows how far a plan has come: one live line on a terminal, JSON lines, or nothing.
   [[nodiscard]] planner::ProgressSink progress_sink() const;
+
+ private:
+  void put(std::string_view bytes) const;
+
+  mutable int stdout_error_ = 0;  ///< the first errno that stdout gave
 };
 
 }  // namespace pinjaw::app

@@ -13,7 +13,7 @@ bus::Failure explain(int error, const std::string& interface) {
       return {
           Kind::Unavailable,
           "this machine's kernel has no CAN: load it with 'modprobe -a can can-raw vcan', or run the command "
-          "inside 'tools/vcan-run', or use '--bus sim:'"};
+          "inside 'tools/vcan-run', or, for pinjaw run, use '--bus sim:'"};
     case ENODEV:
     case ENXIO:
       return {Kind::Unavailable,

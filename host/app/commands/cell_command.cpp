@@ -1,8 +1,9 @@
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <memory>
 
+#include "host/app/choices.hpp"
 #include "host/app/commands/commands.hpp"
 #include "host/app/commands/planning.hpp"
 #include "host/app/plan_text.hpp"
@@ -44,6 +45,7 @@ std::string summary_of(const cell::CellPlan& plan) {
 }
 
 void run_cell(Context& context, const Options& options) {
+  if (!context.can_write(options.output, options.cell)) return;
   const auto cell = config::read_cell(options.cell);
   if (!cell) return context.fail(cell.error(), "nothing was planned");
   cell::CellOptions cell_options;
@@ -51,12 +53,7 @@ void run_cell(Context& context, const Options& options) {
   cell_options.top = options.planning.top == "all" ? 0 : std::stoul(options.planning.top);
   const auto plan = cell::make_cell_plan(*cell, cell_options, context.progress_sink());
   if (!plan) return context.fail(ExitCode::BadFile, options.cell + ": " + plan.error().message);
-  if (!context.write_result(options.output, cell::to_json(*plan))) return;
-  if (options.output.empty() || options.output == "-") {
-    context.note(summary_of(*plan));
-  } else {
-    context.print(summary_of(*plan));
-  }
+  if (!context.deliver(options.output, cell::to_json(*plan), summary_of(*plan))) return;
   if (plan->designs.empty()) context.exit_code = ExitCode::No;
 }
 
@@ -64,9 +61,11 @@ void run_cell(Context& context, const Options& options) {
 
 void add_cell(CLI::App& app, Context& context) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("cell", "designs for every station of a cell that can hand the part over");
-  command->add_option("CELL", options->cell, "cell file")->required();
-  command->add_option("-o,--output", options->output, "cell plan JSON; without it the JSON goes to stdout");
+  CLI::App* command =
+      app.add_subcommand("cell", "designs for every station of a cell that can hand the part over");
+  command->add_option("CELL", options->cell, "cell file")->type_name("")->check(file_name())->required();
+  command->add_option("-o,--output", options->output, "cell plan JSON; without it the JSON goes to stdout")
+      ->type_name("FILE");
   add_planning_options(*command, options->planning);
   command->callback([&context, options] { run_cell(context, *options); });
 }

@@ -1,10 +1,13 @@
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
+#include <nlohmann/json.hpp>
 
+#include "host/app/choices.hpp"
 #include "host/app/commands/commands.hpp"
+#include "host/app/commands/planning.hpp"
 #include "host/planner/plan/check.hpp"
 #include "host/planner/plan/plan_json.hpp"
 
@@ -18,42 +21,71 @@ struct Options {
   bool all = false;
 };
 
-/// Prints the failed claims (all of them with --all); true where every claim holds.
-bool report_claims(const Context& context, const std::vector<planner::Claim>& claims, bool all) {
-  bool holds = true;
-  for (const planner::Claim& claim : claims) {
-    holds = holds && claim.holds;
-    if (claim.holds && !all) continue;
-    const std::string subject = claim.subject.empty() ? "plan" : claim.subject;
-    const std::string found = claim.holds ? std::string() : ": " + claim.found;
-    context.print(fmt::format("{:<4} {}: {}{}", claim.holds ? "ok" : "NO", subject, claim.claim, found));
+/// The claims of a plan, as they are recomputed.
+class Verdict {
+ public:
+  void add(std::vector<planner::Claim> claims) {
+    claims_.insert(claims_.end(), claims.begin(), claims.end());
   }
-  return holds;
-}
+  [[nodiscard]] bool holds() const { return std::ranges::all_of(claims_, &planner::Claim::holds); }
+  [[nodiscard]] std::size_t size() const { return claims_.size(); }
+
+  /// The claims that do not hold, with `all` the others too.
+  [[nodiscard]] std::string text(bool all) const {
+    std::string lines;
+    for (const planner::Claim& claim : claims_) {
+      if (claim.holds && !all) continue;
+      lines += fmt::format("{:<4} {}: {}{}\n", claim.holds ? "ok" : "NO",
+                           claim.subject.empty() ? "plan" : claim.subject, claim.claim,
+                           claim.holds ? "" : ": " + claim.found);
+    }
+    return lines;
+  }
+  [[nodiscard]] nlohmann::ordered_json json(bool all) const {
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    for (const planner::Claim& claim : claims_) {
+      if (claim.holds && !all) continue;
+      list.push_back({{"subject", claim.subject},
+                      {"claim", claim.claim},
+                      {"holds", claim.holds},
+                      {"found", claim.found}});
+    }
+    return list;
+  }
+
+ private:
+  std::vector<planner::Claim> claims_;
+};
 
 void run_check(Context& context, const Options& options) {
   const auto plan = planner::read_plan(options.plan);
   if (!plan) return context.fail(plan.error(), "nothing was checked");
+  const model::Design* only = options.design.empty() ? nullptr : find_design(plan->designs, options.design);
+  if (!options.design.empty() && only == nullptr) {
+    return fail_without_design(context, options.design, options.plan, plan->designs.size());
+  }
   const auto scene = planner::read_scene(planner::task_of(*plan));
   if (!scene) return context.fail(ExitCode::BadFile, options.plan + ": part: " + scene.error().message);
 
-  const std::vector<planner::Claim> whole = planner::check_plan(*plan, *scene);
-  std::size_t claims = whole.size();
-  bool holds = report_claims(context, whole, options.all);
+  Verdict verdict;
+  verdict.add(planner::check_plan(*plan, *scene));
   std::size_t designs = 0;
   for (const model::Design& design : plan->designs) {
-    const bool wanted = options.design.empty() || design.id == options.design ||
-                        (options.design == "best" && &design == &plan->designs.front());
-    if (!wanted) continue;
+    if (only != nullptr && &design != only) continue;
     ++designs;
-    const std::vector<planner::Claim> of_design = planner::check_design(*plan, *scene, design);
-    claims += of_design.size();
-    holds = report_claims(context, of_design, options.all) && holds;
+    verdict.add(planner::check_design(*plan, *scene, design));
   }
-  if (designs == 0) return context.fail(ExitCode::No, "no design " + options.design + " in " + options.plan);
-  context.print(fmt::format("{}: {} claims of {} designs {}", options.plan, claims, designs,
-                            holds ? "hold" : "were recomputed, some do not hold"));
-  if (!holds) context.exit_code = ExitCode::No;
+  if (context.json) {
+    const nlohmann::ordered_json document = {
+        {"format", "pinjaw-check/1"}, {"plan", options.plan},      {"holds", verdict.holds()},
+        {"designs", designs},         {"checked", verdict.size()}, {"claims", verdict.json(options.all)}};
+    context.print(document.dump(1));
+  } else {
+    context.print(verdict.text(options.all) +
+                  fmt::format("{}: {} claims of {} designs {}", options.plan, verdict.size(), designs,
+                              verdict.holds() ? "hold" : "were recomputed, some do not hold"));
+  }
+  if (!verdict.holds()) context.exit_code = ExitCode::No;
 }
 
 }  // namespace
@@ -61,8 +93,8 @@ void run_check(Context& context, const Options& options) {
 void add_check(CLI::App& app, Context& context) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("check", "recompute every claim of a plan from its stated numbers");
-  command->add_option("PLAN", options->plan, "plan JSON")->required();
-  command->add_option("--design", options->design, "only this design (an id, or best)");
+  command->add_option("PLAN", options->plan, "plan JSON")->type_name("")->check(file_name())->required();
+  command->add_option("--design", options->design, "only this design (an id, or best)")->type_name("ID");
   command->add_flag("--all", options->all, "print the claims that hold, too");
   command->callback([&context, options] { run_check(context, *options); });
 }

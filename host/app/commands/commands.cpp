@@ -15,6 +15,8 @@ void add_commands(CLI::App& app, Context& context) {
   add_jaw(app, context);
   add_run(app, context);
   add_dbc(app, context);
+  add_explain(app, context);
+  add_examples(app);
 }
 
 }  // namespace pinjaw::app

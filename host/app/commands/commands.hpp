@@ -17,6 +17,10 @@ void add_send(CLI::App& app, Context& context);
 void add_jaw(CLI::App& app, Context& context);
 void add_run(CLI::App& app, Context& context);
 void add_dbc(CLI::App& app, Context& context);
+void add_explain(CLI::App& app, Context& context);
+
+/// Puts an example under the help of each.
+void add_examples(CLI::App& app);
 
 /// All of them, in the order of the help.
 void add_commands(CLI::App& app, Context& context);

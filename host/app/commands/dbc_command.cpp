@@ -1,8 +1,8 @@
 #include <CLI/CLI.hpp>
-
 #include <algorithm>
 #include <memory>
 
+#include "host/app/choices.hpp"
 #include "host/app/commands/commands.hpp"
 #include "protocol/describe/describe.hpp"
 
@@ -29,8 +29,11 @@ void run_dbc(Context& context, const Options& options) {
 void add_dbc(CLI::App& app, Context& context) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("dbc", "the messages of the bus as a DBC file (JSON with --json)");
-  command->add_option("-o,--output", options->output, "file; without it to stdout");
-  command->add_option("--nodes", options->nodes, "only these nodes, e.g. 1,2,3")->delimiter(',')->check(CLI::Range(1, 14));
+  command->add_option("-o,--output", options->output, "without it the DBC goes to stdout")->type_name("FILE");
+  command->add_option("--nodes", options->nodes, "only these nodes, e.g. 1,2,3")
+      ->type_name("N,...")
+      ->delimiter(',')
+      ->check(whole_in({1, 14}));
   command->callback([&context, options] { run_dbc(context, *options); });
 }
 

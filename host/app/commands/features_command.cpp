@@ -1,8 +1,9 @@
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <memory>
 
+#include "host/app/choices.hpp"
 #include "host/app/commands/commands.hpp"
 #include "host/config/read.hpp"
 #include "host/planner/features/features.hpp"
@@ -19,7 +20,8 @@ struct Options {
   std::string output;
 };
 
-std::vector<std::pair<std::string, int>> counts_of(const planner::FeatureCounts& counts, const part::EdgeCounts& edges) {
+std::vector<std::pair<std::string, int>> counts_of(const planner::FeatureCounts& counts,
+                                                   const part::EdgeCounts& edges) {
   return {{"edges", edges.total},
           {"left_out_seams", edges.seams},
           {"left_out_degenerate", edges.degenerate},
@@ -33,7 +35,16 @@ std::vector<std::pair<std::string, int>> counts_of(const planner::FeatureCounts&
           {"reachable", counts.reachable}};
 }
 
+bool is_known_ending(const std::string& output) {
+  return output.empty() || output == "-" || output.ends_with(".json") || output.ends_with(".svg");
+}
+
 void run_features(Context& context, const Options& options) {
+  if (!is_known_ending(options.output)) {
+    return context.fail(ExitCode::Usage,
+                        "--output: expected a name that ends in .json or .svg, found " + options.output);
+  }
+  if (!context.can_write(options.output, options.task)) return;
   const auto task = config::read_task(options.task);
   if (!task) return context.fail(task.error(), "nothing was planned");
   const auto scene = planner::read_scene(*task);
@@ -42,21 +53,20 @@ void run_features(Context& context, const Options& options) {
   const planner::Features found = planner::find_features(scene->turned, task->kit.pins);
   const auto counts = counts_of(found.counts, scene->part.edge_counts);
   const bool drawing = options.output.ends_with(".svg");
-  std::string bytes;
+  const std::string document = planner::features_json(task->name, found.features, counts);
+  std::string bytes = document;
   if (drawing) {
-    bytes = report::features_svg({task->name, found.features, planner::outlines(scene->turned).from_below,
-                                  task->kit.pins.radius_mm});
-  } else {
-    bytes = planner::features_json(task->name, found.features, counts);
+    bytes = report::features_svg(
+        {task->name, found.features, planner::outlines(scene->turned).from_below, task->kit.pins.radius_mm});
   }
-  if (!context.write_result(options.output, bytes)) return;
   std::string summary;
   for (const auto& [name, count] : counts) summary += fmt::format("{:<20}{:>7}\n", name, count);
   summary.pop_back();
+  if (!context.write_result(options.output, bytes)) return;
   if (options.output.empty() || options.output == "-") {
     context.note(summary);
   } else {
-    context.print(summary);
+    context.print(context.json ? document : summary);
   }
   if (found.features.empty()) context.exit_code = ExitCode::No;
 }
@@ -66,8 +76,9 @@ void run_features(Context& context, const Options& options) {
 void add_features(CLI::App& app, Context& context) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("features", "the edges of a part that a pin can touch");
-  command->add_option("TASK", options->task, "task file")->required();
-  command->add_option("-o,--output", options->output, "FILE.json or FILE.svg; without it JSON to stdout");
+  command->add_option("TASK", options->task, "task file")->type_name("")->check(file_name())->required();
+  command->add_option("-o,--output", options->output, "FILE.json or FILE.svg; without it JSON to stdout")
+      ->type_name("FILE");
   command->callback([&context, options] { run_features(context, *options); });
 }
 

@@ -1,9 +1,11 @@
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <memory>
 
+#include "host/app/choices.hpp"
 #include "host/app/commands/commands.hpp"
+#include "host/app/commands/planning.hpp"
 #include "host/config/read.hpp"
 #include "host/planner/plan/planar_json.hpp"
 #include "host/planner/planar/planar.hpp"
@@ -20,6 +22,7 @@ struct Options {
 };
 
 void run_planar(Context& context, const Options& options) {
+  if (!context.can_write(options.output, options.profile)) return;
   const auto profile = config::read_profile(options.profile);
   const auto kit = config::read_kit(options.kit);
   base::Diagnostics mistakes;
@@ -32,13 +35,8 @@ void run_planar(Context& context, const Options& options) {
   planar.outline = &*profile;
   planar.threads = options.threads;
   const planner::PlanarResult result = planner::plan_planar_fixtures(features, *kit, planar);
-  if (!context.write_result(options.output, planner::to_json(result.fixtures, features, *kit))) return;
   const std::string summary = fmt::format("{} planar fixtures, each and its twin", result.fixtures.size());
-  if (options.output.empty() || options.output == "-") {
-    context.note(summary);
-  } else {
-    context.print(summary);
-  }
+  if (!context.deliver(options.output, planner::to_json(result.fixtures, features, *kit), summary)) return;
   if (result.fixtures.empty()) context.exit_code = ExitCode::No;
 }
 
@@ -47,10 +45,13 @@ void run_planar(Context& context, const Options& options) {
 void add_planar(CLI::App& app, Context& context) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("planar", "every planar fixture of a profile");
-  command->add_option("PROFILE", options->profile, "profile file")->required();
-  command->add_option("--kit", options->kit, "kit file")->required();
+  command->add_option("PROFILE", options->profile, "profile file")
+      ->type_name("")
+      ->check(file_name())
+      ->required();
+  command->add_option("--kit", options->kit, "kit file")->type_name("KIT")->required();
   command->add_option("-o,--output", options->output, "JSON; without it to stdout")->type_name("FILE");
-  command->add_option("--threads", options->threads, "threads; 0: as many as there are")->check(CLI::Range(0, 1024));
+  add_threads(*command, options->threads);
   command->callback([&context, options] { run_planar(context, *options); });
 }
 

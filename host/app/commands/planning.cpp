@@ -1,8 +1,11 @@
 #include "host/app/commands/planning.hpp"
 
-#include <CLI/CLI.hpp>
-#include <map>
+#include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+#include "host/app/choices.hpp"
 #include "host/config/read.hpp"
 
 namespace pinjaw::app {
@@ -14,7 +17,8 @@ constexpr int kMostThreads = 1024;
 /// "all" or a whole number above 0.
 std::string top_mistake(const std::string& text) {
   if (text == "all") return {};
-  const bool digits = !text.empty() && text.size() < 10 && text.find_first_not_of("0123456789") == std::string::npos;
+  const bool digits =
+      !text.empty() && text.size() < 10 && text.find_first_not_of("0123456789") == std::string::npos;
   if (digits && std::stoul(text) > 0) return {};
   return "expected a whole number above 0 or all, found " + text;
 }
@@ -22,22 +26,41 @@ std::string top_mistake(const std::string& text) {
 }  // namespace
 
 void add_planning_options(CLI::App& command, PlanningOptions& options) {
-  command.add_option("--top", options.top, "designs that the plan keeps, or all")
-      ->check(CLI::Validator(top_mistake, "N|all"))
+  command.add_option("--top", options.top, "designs that the plan keeps")
+      ->check(CLI::Validator(top_mistake, ""))
+      ->type_name("N|all")
       ->capture_default_str();
-  command.add_option("--friction", options.plan.friction, "pyramid (the paper's) or cone (exact)")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, model::FrictionModel>{
-          {"pyramid", model::FrictionModel::Pyramid}, {"cone", model::FrictionModel::Cone}}))
-      ->default_str("pyramid");
-  command.add_option("--loading", options.plan.loading_2d, "3d, or 2d: pins as tall as the part")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, bool>{{"3d", false}, {"2d", true}}))
-      ->default_str("3d");
-  command.add_option("--threads", options.plan.threads, "threads; 0: as many as there are")
-      ->check(CLI::Range(0, kMostThreads))
+  add_choice<model::FrictionModel>(
+      command, "--friction", options.plan.friction,
+      {{"pyramid", model::FrictionModel::Pyramid}, {"cone", model::FrictionModel::Cone}},
+      "the paper's linear pyramid, or the exact Coulomb cone");
+  add_choice<bool>(command, "--loading", options.plan.loading_2d, {{"3d", false}, {"2d", true}},
+                   "2d: as if the pins were as tall as the part");
+  add_threads(command, options.plan.threads);
+}
+
+void add_threads(CLI::App& command, int& threads) {
+  command.add_option("--threads", threads, "0: as many as the machine has")
+      ->type_name("N")
+      ->check(whole_in({0, kMostThreads}))
       ->capture_default_str();
 }
 
-std::optional<planner::Plan> plan_task(Context& context, const std::string& task_file, const PlanningOptions& options) {
+const model::Design* find_design(const std::vector<model::Design>& designs, const std::string& id) {
+  if (id == "best") return designs.empty() ? nullptr : designs.data();
+  const auto found = std::ranges::find(designs, id, &model::Design::id);
+  return found == designs.end() ? nullptr : &*found;
+}
+
+void fail_without_design(Context& context, const std::string& id, const std::string& file,
+                         std::size_t designs) {
+  context.fail(ExitCode::No, designs == 0
+                                 ? fmt::format("{} has no designs", file)
+                                 : fmt::format("{} has {} designs, none is called {}", file, designs, id));
+}
+
+std::optional<planner::Plan> plan_task(Context& context, const std::string& task_file,
+                                       const PlanningOptions& options) {
   const auto task = config::read_task(task_file);
   if (!task) {
     context.fail(task.error(), "nothing was planned");

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "host/app/context.hpp"
 #include "host/planner/plan/plan.hpp"
@@ -17,7 +18,18 @@ struct PlanningOptions {
 /// --top, --friction, --loading, --threads.
 void add_planning_options(CLI::App& command, PlanningOptions& options);
 
+/// --threads alone.
+void add_threads(CLI::App& command, int& threads);
+
+/// The design of that id, or the first where it is "best"; nothing where there is none.
+const model::Design* find_design(const std::vector<model::Design>& designs, const std::string& id);
+
+/// Reports that find_design found nothing in `file`; exit code 1.
+void fail_without_design(Context& context, const std::string& id, const std::string& file,
+                         std::size_t designs);
+
 /// Reads the task and plans it. Nothing where that failed, which has been reported.
-std::optional<planner::Plan> plan_task(Context& context, const std::string& task_file, const PlanningOptions& options);
+std::optional<planner::Plan> plan_task(Context& context, const std::string& task_file,
+                                       const PlanningOptions& options);
 
 }  // namespace pinjaw::app

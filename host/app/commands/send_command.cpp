@@ -1,10 +1,12 @@
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <CLI/CLI.hpp>
 #include <memory>
+#include <nlohmann/json.hpp>
 
+#include "host/app/choices.hpp"
 #include "host/app/commands/commands.hpp"
+#include "host/app/commands/planning.hpp"
 #include "host/app/talk.hpp"
 #include "host/planner/plan/layout.hpp"
 #include "host/planner/plan/plan_json.hpp"
@@ -38,9 +40,9 @@ bool fits(Context& context, Talk& talk, std::uint8_t node, const wire::Layout& l
 void run_send(Context& context, const Options& options) {
   const auto plan = planner::read_plan(options.plan);
   if (!plan) return context.fail(plan.error(), "nothing was sent");
-  const auto design = options.design == "best" ? plan->designs.begin()
-                                               : std::ranges::find(plan->designs, options.design, &model::Design::id);
-  if (design == plan->designs.end()) return context.fail(ExitCode::No, "no design " + options.design + " in " + options.plan);
+  const model::Design* design = find_design(plan->designs, options.design);
+  if (design == nullptr)
+    return fail_without_design(context, options.design, options.plan, plan->designs.size());
   const auto layout = planner::layout_of({plan->kit, *design, plan->part.sha256, false});
   if (!layout) return context.fail(ExitCode::Refused, layout.error().message);
 
@@ -52,10 +54,14 @@ void run_send(Context& context, const Options& options) {
   const bool sent = talk->carry_out(node, [&](auto& client) { client.send_layout(node, *layout); }) &&
                     talk->carry_out(node, [&](auto& client) { client.arm(node, crc); }) &&
                     talk->carry_out(node, [&](auto& client) { client.disarm(node); });
-  if (sent) {
-    context.print(fmt::format("node {} has design {} (layout {:08x}), armed once to prove it, and is LOADED", node,
-                              design->id, crc));
+  if (!sent) return;
+  if (context.json) {
+    const nlohmann::ordered_json document = {
+        {"node", options.node}, {"design", design->id}, {"layout", fmt::format("{:08x}", crc)}};
+    return context.print(document.dump(1));
   }
+  context.print(fmt::format("node {} has design {} (layout {:08x}), armed once to prove it, and is LOADED",
+                            node, design->id, crc));
 }
 
 }  // namespace
@@ -63,9 +69,14 @@ void run_send(Context& context, const Options& options) {
 void add_send(CLI::App& app, Context& context) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("send", "send a design's layout to a controller and commit it");
-  command->add_option("PLAN", options->plan, "plan JSON")->required();
-  command->add_option("--design", options->design, "id of a design, or best")->capture_default_str();
-  command->add_option("--node", options->node, "the controller")->required()->check(CLI::Range(1, 14));
+  command->add_option("PLAN", options->plan, "plan JSON")->type_name("")->check(file_name())->required();
+  command->add_option("--design", options->design, "id of a design, or best")
+      ->type_name("ID")
+      ->capture_default_str();
+  command->add_option("--node", options->node, "the controller, 1 to 14")
+      ->type_name("N")
+      ->required()
+      ->check(whole_in({1, 14}));
   command->callback([&context, options] { run_send(context, *options); });
 }
 

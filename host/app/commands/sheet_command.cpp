@@ -1,10 +1,11 @@
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <CLI/CLI.hpp>
 #include <memory>
 
+#include "host/app/choices.hpp"
 #include "host/app/commands/commands.hpp"
+#include "host/app/commands/planning.hpp"
 #include "host/planner/plan/plan_json.hpp"
 #include "host/report/part_edges.hpp"
 #include "host/report/sheet.hpp"
@@ -28,12 +29,16 @@ std::optional<report::PictureFormat> format_of(const std::string& file) {
 
 void run_sheet(Context& context, const Options& options) {
   const auto format = format_of(options.output);
-  if (!format) return context.fail(ExitCode::Usage, "--output: expected a name that ends in .svg, .pdf or .png");
+  if (!format) {
+    return context.fail(ExitCode::Usage,
+                        "--output: expected a name that ends in .svg, .pdf or .png, found " + options.output);
+  }
+  if (!context.can_write(options.output, options.plan)) return;
   const auto plan = planner::read_plan(options.plan);
   if (!plan) return context.fail(plan.error(), "nothing was drawn");
-  const auto design = options.design == "best" ? plan->designs.begin()
-                                               : std::ranges::find(plan->designs, options.design, &model::Design::id);
-  if (design == plan->designs.end()) return context.fail(ExitCode::No, "no design " + options.design + " in " + options.plan);
+  const model::Design* design = find_design(plan->designs, options.design);
+  if (design == nullptr)
+    return fail_without_design(context, options.design, options.plan, plan->designs.size());
   const auto scene = planner::read_scene(planner::task_of(*plan));
   if (!scene) return context.fail(ExitCode::BadFile, options.plan + ": part: " + scene.error().message);
 
@@ -50,17 +55,23 @@ void run_sheet(Context& context, const Options& options) {
   sheet.grips = design->pins.size() == 4;
   const auto bytes = report::written(report::sheet_picture(sheet), *format);
   if (!bytes) return context.fail(ExitCode::Bug, bytes.error().message);
-  if (context.write_result(options.output, *bytes)) context.note(fmt::format("{}: design {}", options.output, design->id));
+  if (context.write_result(options.output, *bytes))
+    context.note(fmt::format("{}: design {}", options.output, design->id));
 }
 
 }  // namespace
 
 void add_sheet(CLI::App& app, Context& context) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("sheet", "set-up sheet of a design at 1:1, for whoever puts the pins in");
-  command->add_option("PLAN", options->plan, "plan JSON")->required();
-  command->add_option("--design", options->design, "id of a design, or best")->capture_default_str();
-  command->add_option("-o,--output", options->output, "FILE.svg, FILE.pdf or FILE.png")->required();
+  CLI::App* command =
+      app.add_subcommand("sheet", "set-up sheet of a design at 1:1, for whoever puts the pins in");
+  command->add_option("PLAN", options->plan, "plan JSON")->type_name("")->check(file_name())->required();
+  command->add_option("--design", options->design, "id of a design, or best")
+      ->type_name("ID")
+      ->capture_default_str();
+  command->add_option("-o,--output", options->output, "FILE.svg, FILE.pdf or FILE.png")
+      ->type_name("FILE")
+      ->required();
   command->callback([&context, options] { run_sheet(context, *options); });
 }
 
