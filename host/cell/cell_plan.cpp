@@ -138,7 +138,7 @@ base::Expected<CellPlan> make_cell_plan(const model::Cell& cell, const CellOptio
   for (const model::Station& station : cell.stations) {
     auto planned = plan_station(cell, station, options, progress);
     if (!planned) return tl::unexpected(planned.error());
-    const bool chooses = handoffs_at(cell, station.name) == 1;
+    const bool chooses = handoffs_at(cell, station.name) == 1 && setups.size() != references.offset;
     setups.push_back(setups_of(station, planned->plan.designs, planned->part_low_mm,
                                chooses ? Stances::All : Stances::OwnOnly));
     plan.stations.push_back({station.name, std::move(planned->plan), station.grips});

@@ -57,6 +57,15 @@ std::vector<double> border_angles(const Vector2d& v, const Interval& x_mm, const
   return angles;
 }
 
+/// Where a station that says where the part is stands.
+Vector2d standing_mm(const PlanBounds& bounds) {
+  return {nearest_to_zero(bounds.adjust.x_mm), nearest_to_zero(bounds.adjust.y_mm)};
+}
+
+bool turns_freely(const PlanBounds& bounds) {
+  return bounds.adjust.theta_rad.length() >= kTurn - kAngleTolerance_rad;
+}
+
 }  // namespace
 
 PlanHold::PlanHold(const planner::Hold& hold) : X_GP(hold.part_pose) {
@@ -107,8 +116,7 @@ References references_of(std::span<const PlanBounds> bounds) {
 Pose2 part_in_handoff_frame(const PlanHold& turns_least, const PlanBounds& theta_bounds,
                             const PlanHold& moves_least, const PlanBounds& offset_bounds) {
   const double part_rad = nearest_to_zero(theta_bounds.adjust.theta_rad) + turns_least.X_GP.theta_rad;
-  const Vector2d origin_mm(nearest_to_zero(offset_bounds.adjust.x_mm),
-                           nearest_to_zero(offset_bounds.adjust.y_mm));
+  const Vector2d origin_mm = standing_mm(offset_bounds);
   return {part_rad, origin_mm - turned(part_rad, moves_least.origin_P_mm)};
 }
 
@@ -123,6 +131,23 @@ planner::Adjustment adjustment_for(const PlanHold& hold, model::Side side, const
   return adjustment;
 }
 
+TurnsInReach turns_in_reach(const PlanHold& hold, const PlanBounds& bounds, const PlanHold& moves_least,
+                            const PlanBounds& offset_bounds) {
+  // The station's offset turns with the part on a circle about where `moves_least` stands.
+  const double radius_mm = (hold.origin_P_mm - moves_least.origin_P_mm).norm();
+  const Vector2d middle_mm = standing_mm(offset_bounds);
+  const auto to_ends_mm = [](const Interval& range, double at_mm) {
+    return std::array{at_mm - range.lo, range.hi - at_mm};
+  };
+  const auto x_mm = to_ends_mm(bounds.adjust.x_mm, middle_mm.x());
+  const auto y_mm = to_ends_mm(bounds.adjust.y_mm, middle_mm.y());
+  const double corner_mm = std::hypot(std::max(x_mm[0], x_mm[1]), std::max(y_mm[0], y_mm[1]));
+  constexpr double kRoom_mm = 1e-3;
+  if (radius_mm > corner_mm + kRoom_mm) return TurnsInReach::None;
+  const bool around = radius_mm <= std::min({x_mm[0], x_mm[1], y_mm[0], y_mm[1]});
+  return around && turns_freely(bounds) ? TurnsInReach::All : TurnsInReach::Some;
+}
+
 PartPlace::PartPlace(const Pose2& pose) : X_HP(pose), x_axis(geometry::direction(pose.theta_rad)) {}
 
 bool reaches(const PlanHold& hold, const PlanBounds& bounds, const PartPlace& place) {
@@ -134,8 +159,8 @@ bool reaches(const PlanHold& hold, const PlanBounds& bounds, const PartPlace& pl
       !holds(bounds.adjust.y_mm, offset_mm.y(), kOffsetTolerance_mm)) {
     return false;
   }
-  const bool turns_freely = bounds.adjust.theta_rad.length() >= kTurn - kAngleTolerance_rad;
-  return turns_freely || angle_in(bounds.adjust.theta_rad, place.X_HP.theta_rad - hold.X_GP.theta_rad);
+  return turns_freely(bounds) ||
+         angle_in(bounds.adjust.theta_rad, place.X_HP.theta_rad - hold.X_GP.theta_rad);
 }
 
 }  // namespace pinjaw::cell

@@ -52,6 +52,14 @@ geometry::Pose2 part_in_handoff_frame(const PlanHold& turns_least, const PlanBou
 /// The adjustment that lets a station hold the part there, in the station's own terms.
 planner::Adjustment adjustment_for(const PlanHold& hold, model::Side side, const geometry::Pose2& X_HP);
 
+/// In which turns of the part a station reaches it.
+enum class TurnsInReach { None, Some, All };
+
+/// The same for a station beside `moves_least`, the one that says where the part is: only the part's turn is
+/// open. `Some` where it cannot be told at once.
+TurnsInReach turns_in_reach(const PlanHold& hold, const PlanBounds& bounds, const PlanHold& moves_least,
+                            const PlanBounds& offset_bounds);
+
 /// The part's place with its turn worked out, to be compared with many holds.
 struct PartPlace {
   geometry::Pose2 X_HP;

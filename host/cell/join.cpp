@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 #include <queue>
+
+#include "host/planner/interference/interference.hpp"
 
 namespace pinjaw::cell {
 namespace {
@@ -46,14 +49,32 @@ class Walk {
     return PartPlace(part_in_handoff_frame(setup_of(theta, chosen_[theta]).hold, stations_[theta].bounds,
                                            setup_of(offset, chosen_[offset]).hold, stations_[offset].bounds));
   }
-  [[nodiscard]] bool can_reach(std::size_t station, const Partner& partner, const PartPlace& place) const {
-    return reaches(setup_of(station, partner).hold, stations_[station].bounds, place);
+  /// Whether the far station of `link` can hold the part at its place, in any stance that suits the handoff.
+  [[nodiscard]] bool can_reach(std::size_t link, const Partner& partner, const PartPlace& place) const {
+    const StationSetups& far = stations_[tree_.links[link].far];
+    if (reaches(far.setup(partner.design, partner.stance).hold, far.bounds, place)) return true;
+    return far.stances(partner.design) > 1 && least_moved(link, partner, place).has_value();
+  }
+  /// The first stance, hence the least moved, in which the far station of `link` holds the part at its place
+  /// and does not clash with the near one.
+  [[nodiscard]] std::optional<std::uint32_t> least_moved(std::size_t link, const Partner& partner,
+                                                         const PartPlace& place) const {
+    const auto& [near, far, handoff] = tree_.links[link];
+    const StationSetups& station = stations_[far];
+    const planner::FingerSet& other = setup_of(near, chosen_[near]).fingers;
+    for (std::uint32_t stance = 0; stance < station.stances(partner.design); ++stance) {
+      const Setup& setup = station.setup(partner.design, stance);
+      if (!reaches(setup.hold, station.bounds, place)) continue;
+      if (stance == partner.stance || planner::compatible(other, setup.fingers)) return stance;
+    }
+    return std::nullopt;
   }
   /// Once the part's place is known: whether the stations chosen so far reach it.
   [[nodiscard]] bool chosen_reach(std::size_t links_walked, const PartPlace& place) const {
-    if (!can_reach(tree_.root, chosen_[tree_.root], place)) return false;
+    const StationSetups& root = stations_[tree_.root];
+    if (!reaches(setup_of(tree_.root, chosen_[tree_.root]).hold, root.bounds, place)) return false;
     for (std::size_t i = 0; i < links_walked; ++i) {
-      if (!can_reach(tree_.links[i].far, chosen_[tree_.links[i].far], place)) return false;
+      if (!can_reach(i, chosen_[tree_.links[i].far], place)) return false;
     }
     return true;
   }
@@ -71,7 +92,7 @@ class Walk {
 
 class Counter : Walk {
  public:
-  explicit Counter(const JoinInput& input) : Walk(input) {}
+  explicit Counter(const JoinInput& input) : Walk(input), leaves_(tree_.links.size()) {}
 
   std::int64_t with_root(std::uint32_t design) {
     chosen_[tree_.root] = {design, 0};
@@ -79,6 +100,48 @@ class Counter : Walk {
   }
 
  private:
+  /// Partners at a link from the station that says where the part is to one beyond which there is none: only
+  /// the part's turn is open.
+  struct Leaf {
+    std::optional<std::uint32_t> of;                    ///< design of the near station
+    std::int64_t always = 0;                            ///< partners in reach however the part is turned
+    std::vector<std::vector<const PlanHold*>> depends;  ///< of each other: its holds that may come into reach
+  };
+
+  const Leaf& leaf_at(std::size_t link) {
+    Leaf& leaf = leaves_[link];
+    const auto& [near, far, handoff] = tree_.links[link];
+    if (leaf.of == chosen_[near].design) return leaf;
+    leaf = {chosen_[near].design, 0, {}};
+    const StationSetups& station = stations_[far];
+    const Setup& other = setup_of(near, chosen_[near]);
+    const auto turns = [&](const PlanHold& hold) {
+      return turns_in_reach(hold, station.bounds, other.hold, stations_[near].bounds);
+    };
+    for (const Partner& partner : partners_at(link)) {
+      if (turns(setup_of(far, partner).hold) == TurnsInReach::All) {
+        ++leaf.always;
+        continue;
+      }
+      std::vector<const PlanHold*> holds;
+      for (std::size_t stance = 0; stance < station.stances(partner.design); ++stance) {
+        const Setup& setup = station.setup(partner.design, stance);
+        if (turns(setup.hold) != TurnsInReach::None && planner::compatible(other.fingers, setup.fingers)) {
+          holds.push_back(&setup.hold);
+        }
+      }
+      if (!holds.empty()) leaf.depends.push_back(std::move(holds));
+    }
+    return leaf;
+  }
+
+  std::int64_t in_reach(const Leaf& leaf, const PlanBounds& bounds, const PartPlace& place) const {
+    return leaf.always + std::ranges::count_if(leaf.depends, [&](const auto& holds) {
+             return std::ranges::any_of(holds,
+                                        [&](const PlanHold* hold) { return reaches(*hold, bounds, place); });
+           });
+  }
+
   std::int64_t until_known(std::size_t link) {
     if (link == known_after_) {
       const PartPlace place = part_place();
@@ -103,9 +166,12 @@ class Counter : Walk {
     const std::size_t station = tree_.links[link].far;
     const bool ends_here =
         std::ranges::none_of(tree_.links, [&](const auto& other) { return other.near == station; });
+    if (ends_here && tree_.links[link].near == references_.offset) {
+      return in_reach(leaf_at(link), stations_[station].bounds, place);
+    }
     std::int64_t total = 0;
     for (const Partner& partner : partners_at(link)) {
-      if (!can_reach(station, partner, place)) continue;
+      if (!can_reach(link, partner, place)) continue;
       if (ends_here) {
         ++total;
         continue;
@@ -119,6 +185,8 @@ class Counter : Walk {
     }
     return total;
   }
+
+  std::vector<Leaf> leaves_;
 };
 
 class BestFirst : Walk {
@@ -134,12 +202,22 @@ class BestFirst : Walk {
       choose(0, score_n);
     }
     std::vector<Choice> sorted;
-    for (; !best_.empty(); best_.pop()) sorted.push_back(best_.top());
+    for (; !best_.empty(); best_.pop()) sorted.push_back(in_least_moved_stances(best_.top()));
     std::reverse(sorted.begin(), sorted.end());
     return sorted;
   }
 
  private:
+  [[nodiscard]] Choice in_least_moved_stances(Choice choice) {
+    chosen_ = choice.stations;
+    const PartPlace place = part_place();
+    for (std::size_t i = 0; i < tree_.links.size(); ++i) {
+      Partner& partner = choice.stations[tree_.links[i].far];
+      partner.stance = least_moved(i, partner, place).value_or(partner.stance);
+    }
+    return choice;
+  }
+
   [[nodiscard]] bool hopeless(double score_n) const {
     return best_.size() == top_ && score_n > best_.top().score_n;
   }

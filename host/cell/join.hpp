@@ -30,8 +30,8 @@ enum class TreeFault {
   Cycle,         ///< handoffs form a ring, or one is listed twice
 };
 
-/// Orders the handoffs from the station of most handoffs outwards, the stations in `first` as early as may
-/// be.
+/// Orders the handoffs from the station of most handoffs outwards (of equals the last of those in `first`),
+/// the stations in `first` as early as may be.
 struct TreeOutcome {
   TreeFault fault = TreeFault::None;
   HandoffTree tree;
@@ -59,7 +59,8 @@ struct JoinResult {
   std::vector<Choice> best;  ///< smallest score first, then by the designs' order in their stations
 };
 
-/// Joins pairs into designs for the whole cell (BB 4.1) without holding them: counted by product where
+/// Joins pairs into designs for the whole cell (BB 4.1) without holding them: a choice counts once, in
+/// however many stances it is possible, and is listed in those that move pins least. Counted by product where
 /// stations do not depend on each other, the best `top` by a bounded search.
 JoinResult join(const JoinInput& input, std::size_t top);
 

@@ -18,18 +18,27 @@ bool overlap(const Interval& a, const Interval& b) {
   return a.lo < b.hi && b.lo < a.hi;
 }
 
-/// Whether two closed pins clash: the part of the handoff's checks that no stance changes.
-bool closed_pins_clash(const planner::FingerSet& one, const planner::FingerSet& other) {
+double distance2_mm2(const Vector2d& p_mm, const planner::Finger& moving) {
+  const Vector2d travel_mm = moving.open_mm - moving.closed_mm;
+  const double travel2_mm2 = travel_mm.squaredNorm();
+  const Vector2d from_mm = p_mm - moving.closed_mm;
+  const double t = travel2_mm2 > 0 ? std::clamp(travel_mm.dot(from_mm) / travel2_mm2, 0.0, 1.0) : 0.0;
+  return (from_mm - t * travel_mm).squaredNorm();
+}
+
+/// Whether pins of two designs clash in every stance of `other`, closed or when one opens: pins stand closed
+/// in one place of the part and open along one line, in `other` as little as in any stance.
+bool always_clash(const planner::FingerSet& one, const planner::FingerSet& other) {
   if (!overlap(one.pins_z_mm, other.pins_z_mm)) return false;
   const double apart_mm = one.radius_mm + other.radius_mm + std::max(one.clearance_mm, other.clearance_mm);
+  const double apart2_mm2 = kSure * apart_mm * apart_mm;
   for (int i = 0; i < one.pin_count; ++i) {
     const planner::Finger& a = one.pins[static_cast<std::size_t>(i)];
     for (int k = 0; k < other.pin_count; ++k) {
       const planner::Finger& b = other.pins[static_cast<std::size_t>(k)];
-      if ((a.closed_mm - b.closed_mm).squaredNorm() < kSure * apart_mm * apart_mm &&
-          overlap(a.z_mm, b.z_mm)) {
+      if (!overlap(a.z_mm, b.z_mm)) continue;
+      if (distance2_mm2(a.closed_mm, b) < apart2_mm2 || distance2_mm2(b.closed_mm, a) < apart2_mm2)
         return true;
-      }
     }
   }
   return false;
@@ -53,12 +62,14 @@ class PartnerSearch {
   [[nodiscard]] std::vector<Partner> of(std::size_t index) const {
     const Setup& own = near_.setup(index, 0);
     std::vector<Partner> partners;
+    std::vector<Stand> stands;
     for (std::size_t k = 0; k < far_.size(); ++k) {
-      if (closed_pins_clash(own.fingers, far_.setup(k, 0).fingers)) continue;
-      const std::size_t stances = far_.first[k + 1] - far_.first[k];
-      for (std::size_t stance = 0; stance < stances; ++stance) {
-        if (!fits(own, far_.setup(k, stance))) continue;
-        partners.push_back({static_cast<std::uint32_t>(k), static_cast<std::uint32_t>(stance)});
+      const planner::FingerSet& fingers = far_.setup(k, far_.opens_least[k]).fingers;
+      if (planner::reaches_floor(own.fingers, fingers) || always_clash(own.fingers, fingers)) continue;
+      list_stands(own, k, stands);
+      for (const Stand& stand : stands) {
+        if (!fits(own, far_.setup(k, stand.stance))) continue;
+        partners.push_back({static_cast<std::uint32_t>(k), stand.stance});
         break;
       }
     }
@@ -66,10 +77,25 @@ class PartnerSearch {
   }
 
  private:
+  /// A stance and how far the two grippers' origins then are apart.
+  struct Stand {
+    double apart2_mm2 = 0;
+    std::uint32_t stance = 0;
+    friend auto operator<=>(const Stand&, const Stand&) = default;
+  };
+
+  /// Stances of design `k` that are not too far off, nearest first.
+  void list_stands(const Setup& own, std::size_t k, std::vector<Stand>& stands) const {
+    stands.clear();
+    for (std::uint32_t stance = 0; stance < far_.stances(k); ++stance) {
+      const double apart2_mm2 = (own.hold.origin_P_mm - far_.setup(k, stance).hold.origin_P_mm).squaredNorm();
+      if (apart2_mm2 <= farthest_mm_ * farthest_mm_) stands.push_back({apart2_mm2, stance});
+    }
+    std::ranges::sort(stands);
+  }
+
   [[nodiscard]] bool fits(const Setup& own, const Setup& other) const {
-    const double apart_mm2 = (own.hold.origin_P_mm - other.hold.origin_P_mm).squaredNorm();
-    return apart_mm2 <= farthest_mm_ * farthest_mm_ &&
-           adjustable(own.hold, near_.bounds, other.hold, far_.bounds) &&
+    return adjustable(own.hold, near_.bounds, other.hold, far_.bounds) &&
            planner::compatible(own.fingers, other.fingers);
   }
 

@@ -7,8 +7,9 @@
 
 namespace pinjaw::cell {
 
-/// A design that a given design of the other station may hand the part to or take it from, and its stance for
-/// that: the first of its stances that can be adjusted and has no interference.
+/// A design that a given design of the other station may hand the part to or take it from, and a stance for
+/// that: of its stances that can be adjusted and have no interference the one whose gripper's origin lies
+/// nearest to the other's, hence the likeliest to suit the other stations as well.
 struct Partner {
   std::uint32_t design = 0;
   std::uint32_t stance = 0;

@@ -27,7 +27,10 @@ struct StationSetups {
   std::vector<double> required_n;    ///< of each design; 0 for a pallet
   std::vector<Setup> setups;         ///< design by design
   std::vector<std::uint32_t> first;  ///< of each design, and one past the last
+  std::vector<std::uint32_t>
+      opens_least;  ///< of each design: the stance whose jaws travel least when they open
   [[nodiscard]] std::size_t size() const { return required_n.size(); }
+  [[nodiscard]] std::size_t stances(std::size_t index) const { return first[index + 1] - first[index]; }
   /// The `stance`-th setup of design `index`; 0 is the design as it stands.
   [[nodiscard]] const Setup& setup(std::size_t index, std::size_t stance) const {
     return setups[first[index] + stance];
@@ -36,8 +39,9 @@ struct StationSetups {
 
 /// Which stances of a design take part.
 enum class Stances {
-  OwnOnly,  ///< the design as it stands: a station of several handoffs keeps it in all of them
-  All,      ///< shifted by rows and columns as well: a station of one handoff may choose
+  OwnOnly,  ///< the design as it stands: a station of several handoffs, which keeps it in all of them, and
+            ///< the one whose offset says where the part is
+  All,      ///< shifted by rows and columns as well: any other station
 };
 
 /// `designs`: smallest required squeeze first; `part_low_mm`: lowest z of the part turned by the station's

@@ -28,6 +28,9 @@ TreeOutcome handoff_tree(std::size_t stations, const std::vector<StationPair>& h
   TreeOutcome outcome;
   const auto busier = [](const auto& a, const auto& b) { return a.size() < b.size(); };
   outcome.tree.root = static_cast<std::size_t>(std::max_element(at.begin(), at.end(), busier) - at.begin());
+  for (const std::size_t station : first) {
+    if (at[station].size() == at[outcome.tree.root].size()) outcome.tree.root = station;
+  }
 
   std::vector<std::size_t> parent(stations);
   std::vector<std::size_t> by(stations, handoffs.size());

@@ -264,8 +264,12 @@ HandoffVerdict check_handoff(const FingerSet& giver, const FingerSet& receiver) 
   return {};
 }
 
+bool reaches_floor(const FingerSet& giver, const FingerSet& receiver) {
+  return floor_clash(giver, receiver) || floor_clash(receiver, giver);
+}
+
 bool compatible(const FingerSet& giver, const FingerSet& receiver) {
-  if (floor_clash(giver, receiver) || floor_clash(receiver, giver)) return false;
+  if (reaches_floor(giver, receiver)) return false;
   if (pins_ever_clash(giver, receiver)) return false;
   return std::none_of(kChecks.begin(), kChecks.end(), [&](const Check& check) {
     return plate_clash({giver, receiver, check.giver, check.receiver}).has_value();

@@ -46,6 +46,9 @@ struct HandoffVerdict {
 /// gives.
 HandoffVerdict check_handoff(const FingerSet& giver, const FingerSet& receiver);
 
+/// Whether a pin of one reaches the floor on which the part of the other rests: what no stance changes.
+bool reaches_floor(const FingerSet& giver, const FingerSet& receiver);
+
 /// The same answer as check_handoff(...).compatible(), without finding out which check failed first.
 bool compatible(const FingerSet& giver, const FingerSet& receiver);
 
