@@ -115,6 +115,7 @@ geometry::Curve Carrier::curve_over(const geometry::Interval& stretch_mm, FreeSi
 
 std::vector<Carrier> carriers_of(const std::vector<PlanCurve>& curves) {
   std::vector<const PlanCurve*> longest_first;
+  longest_first.reserve(curves.size());
   for (const PlanCurve& curve : curves) longest_first.push_back(&curve);
   std::ranges::stable_sort(longest_first, [](const PlanCurve* a, const PlanCurve* b) {
     return std::pair(a->approximate, -geometry::length_mm(a->curve)) <

@@ -100,6 +100,7 @@ std::vector<double> thinned(std::vector<Cut> cuts) {
     }
   }
   std::vector<double> positions;
+  positions.reserve(kept.size());
   for (const Cut& cut : kept) positions.push_back(cut.along_mm);
   return positions;
 }

@@ -74,7 +74,7 @@ std::vector<Stretch> jumping_stretches(const geometry::Surface& surface, const C
   return stretches;
 }
 
-std::vector<Stretch> joined(std::vector<Stretch> stretches, const Carrier& carrier) {
+std::vector<Stretch> joined(const std::vector<Stretch>& stretches, const Carrier& carrier) {
   std::vector<Stretch> result;
   for (const Stretch& stretch : stretches) {
     const bool adjacent = !result.empty() && result.back().side == stretch.side &&
