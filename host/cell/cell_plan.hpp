@@ -35,7 +35,8 @@ struct PairCount {
 
 struct StationPlan {
   std::string station;
-  planner::Plan plan;  ///< every design; of a pallet: three pins each, the funnel's force phases equal to loadable
+  planner::Plan
+      plan;  ///< every design; of a pallet: three pins each, the funnel's force phases equal to loadable
   bool grips = true;
 };
 

@@ -25,33 +25,33 @@ bool precedes(const Choice& a, const Choice& b) {
 class Walk {
  public:
   explicit Walk(const JoinInput& input)
-      : stations_(*input.stations),
-        tree_(*input.tree),
-        partners_(*input.partners),
-        references_(input.references),
-        chosen_(stations_.size()) {
-    known_after_ = std::max(place_of(references_.theta), place_of(references_.offset));
+      : stations(*input.stations),
+        tree(*input.tree),
+        partners(*input.partners),
+        references(input.references),
+        chosen(stations.size()) {
+    known_after = std::max(place_of(references.theta), place_of(references.offset));
   }
 
  protected:
   /// How many links are walked when `station` has its design.
   [[nodiscard]] std::size_t place_of(std::size_t station) const {
-    for (std::size_t i = 0; i < tree_.links.size(); ++i) {
-      if (tree_.links[i].far == station) return i + 1;
+    for (std::size_t i = 0; i < tree.links.size(); ++i) {
+      if (tree.links[i].far == station) return i + 1;
     }
     return 0;
   }
   [[nodiscard]] const Setup& setup_of(std::size_t station, const Partner& partner) const {
-    return stations_[station].setup(partner.design, partner.stance);
+    return stations[station].setup(partner.design, partner.stance);
   }
   [[nodiscard]] PartPlace part_place() const {
-    const auto& [theta, offset] = references_;
-    return PartPlace(part_in_handoff_frame(setup_of(theta, chosen_[theta]).hold, stations_[theta].bounds,
-                                           setup_of(offset, chosen_[offset]).hold, stations_[offset].bounds));
+    const auto& [theta, offset] = references;
+    return PartPlace(part_in_handoff_frame(setup_of(theta, chosen[theta]).hold, stations[theta].bounds,
+                                           setup_of(offset, chosen[offset]).hold, stations[offset].bounds));
   }
   /// Whether the far station of `link` can hold the part at its place, in any stance that suits the handoff.
   [[nodiscard]] bool can_reach(std::size_t link, const Partner& partner, const PartPlace& place) const {
-    const StationSetups& far = stations_[tree_.links[link].far];
+    const StationSetups& far = stations[tree.links[link].far];
     if (reaches(far.setup(partner.design, partner.stance).hold, far.bounds, place)) return true;
     return far.stances(partner.design) > 1 && least_moved(link, partner, place).has_value();
   }
@@ -59,9 +59,9 @@ class Walk {
   /// and does not clash with the near one.
   [[nodiscard]] std::optional<std::uint32_t> least_moved(std::size_t link, const Partner& partner,
                                                          const PartPlace& place) const {
-    const auto& [near, far, handoff] = tree_.links[link];
-    const StationSetups& station = stations_[far];
-    const planner::FingerSet& other = setup_of(near, chosen_[near]).fingers;
+    const auto& [near, far, handoff] = tree.links[link];
+    const StationSetups& station = stations[far];
+    const planner::FingerSet& other = setup_of(near, chosen[near]).fingers;
     for (std::uint32_t stance = 0; stance < station.stances(partner.design); ++stance) {
       const Setup& setup = station.setup(partner.design, stance);
       if (!reaches(setup.hold, station.bounds, place)) continue;
@@ -71,31 +71,31 @@ class Walk {
   }
   /// Once the part's place is known: whether the stations chosen so far reach it.
   [[nodiscard]] bool chosen_reach(std::size_t links_walked, const PartPlace& place) const {
-    const StationSetups& root = stations_[tree_.root];
-    if (!reaches(setup_of(tree_.root, chosen_[tree_.root]).hold, root.bounds, place)) return false;
+    const StationSetups& root = stations[tree.root];
+    if (!reaches(setup_of(tree.root, chosen[tree.root]).hold, root.bounds, place)) return false;
     for (std::size_t i = 0; i < links_walked; ++i) {
-      if (!can_reach(i, chosen_[tree_.links[i].far], place)) return false;
+      if (!can_reach(i, chosen[tree.links[i].far], place)) return false;
     }
     return true;
   }
   [[nodiscard]] const std::vector<Partner>& partners_at(std::size_t link) const {
-    return partners_[link][chosen_[tree_.links[link].near].design];
+    return partners[link][chosen[tree.links[link].near].design];
   }
 
-  const std::vector<StationSetups>& stations_;
-  const HandoffTree& tree_;
-  const std::vector<Partners>& partners_;
-  References references_;
-  std::size_t known_after_ = 0;  ///< links to walk until the part's place is known
-  std::vector<Partner> chosen_;
+  const std::vector<StationSetups>& stations;
+  const HandoffTree& tree;
+  const std::vector<Partners>& partners;
+  References references;
+  std::size_t known_after = 0;  ///< links to walk until the part's place is known
+  std::vector<Partner> chosen;
 };
 
 class Counter : Walk {
  public:
-  explicit Counter(const JoinInput& input) : Walk(input), leaves_(tree_.links.size()) {}
+  explicit Counter(const JoinInput& input) : Walk(input), leaves_(tree.links.size()) {}
 
   std::int64_t with_root(std::uint32_t design) {
-    chosen_[tree_.root] = {design, 0};
+    chosen[tree.root] = {design, 0};
     return until_known(0);
   }
 
@@ -110,13 +110,14 @@ class Counter : Walk {
 
   const Leaf& leaf_at(std::size_t link) {
     Leaf& leaf = leaves_[link];
-    const auto& [near, far, handoff] = tree_.links[link];
-    if (leaf.of == chosen_[near].design) return leaf;
-    leaf = {chosen_[near].design, 0, {}};
-    const StationSetups& station = stations_[far];
-    const Setup& other = setup_of(near, chosen_[near]);
+    const std::size_t near = tree.links[link].near;
+    const std::size_t far = tree.links[link].far;
+    if (leaf.of == chosen[near].design) return leaf;
+    leaf = {chosen[near].design, 0, {}};
+    const StationSetups& station = stations[far];
+    const Setup& other = setup_of(near, chosen[near]);
     const auto turns = [&](const PlanHold& hold) {
-      return turns_in_reach(hold, station.bounds, other.hold, stations_[near].bounds);
+      return turns_in_reach(hold, station.bounds, other.hold, stations[near].bounds);
     };
     for (const Partner& partner : partners_at(link)) {
       if (turns(setup_of(far, partner).hold) == TurnsInReach::All) {
@@ -135,7 +136,8 @@ class Counter : Walk {
     return leaf;
   }
 
-  std::int64_t in_reach(const Leaf& leaf, const PlanBounds& bounds, const PartPlace& place) const {
+  [[nodiscard]] std::int64_t in_reach(const Leaf& leaf, const PlanBounds& bounds,
+                                      const PartPlace& place) const {
     return leaf.always + std::ranges::count_if(leaf.depends, [&](const auto& holds) {
              return std::ranges::any_of(holds,
                                         [&](const PlanHold* hold) { return reaches(*hold, bounds, place); });
@@ -143,19 +145,19 @@ class Counter : Walk {
   }
 
   std::int64_t until_known(std::size_t link) {
-    if (link == known_after_) {
+    if (link == known_after) {
       const PartPlace place = part_place();
       if (!chosen_reach(link, place)) return 0;
       std::int64_t product = 1;
-      for (std::size_t i = link; i < tree_.links.size() && product > 0; ++i) {
-        const bool hangs_on_chosen = place_of(tree_.links[i].near) <= link;
+      for (std::size_t i = link; i < tree.links.size() && product > 0; ++i) {
+        const bool hangs_on_chosen = place_of(tree.links[i].near) <= link;
         if (hangs_on_chosen) product *= below(i, place);
       }
       return product;
     }
     std::int64_t total = 0;
     for (const Partner& partner : partners_at(link)) {
-      chosen_[tree_.links[link].far] = partner;
+      chosen[tree.links[link].far] = partner;
       total += until_known(link + 1);
     }
     return total;
@@ -163,11 +165,11 @@ class Counter : Walk {
 
   /// Ways to choose the far station of `link` and all stations beyond it.
   std::int64_t below(std::size_t link, const PartPlace& place) {
-    const std::size_t station = tree_.links[link].far;
+    const std::size_t station = tree.links[link].far;
     const bool ends_here =
-        std::ranges::none_of(tree_.links, [&](const auto& other) { return other.near == station; });
-    if (ends_here && tree_.links[link].near == references_.offset) {
-      return in_reach(leaf_at(link), stations_[station].bounds, place);
+        std::ranges::none_of(tree.links, [&](const auto& other) { return other.near == station; });
+    if (ends_here && tree.links[link].near == references.offset) {
+      return in_reach(leaf_at(link), stations[station].bounds, place);
     }
     std::int64_t total = 0;
     for (const Partner& partner : partners_at(link)) {
@@ -176,10 +178,10 @@ class Counter : Walk {
         ++total;
         continue;
       }
-      chosen_[station] = partner;
+      chosen[station] = partner;
       std::int64_t product = 1;
-      for (std::size_t i = link + 1; i < tree_.links.size() && product > 0; ++i) {
-        if (tree_.links[i].near == station) product *= below(i, place);
+      for (std::size_t i = link + 1; i < tree.links.size() && product > 0; ++i) {
+        if (tree.links[i].near == station) product *= below(i, place);
       }
       total += product;
     }
@@ -194,11 +196,11 @@ class BestFirst : Walk {
   BestFirst(const JoinInput& input, std::size_t top) : Walk(input), top_(top), best_(precedes) {}
 
   std::vector<Choice> take() {
-    const StationSetups& root = stations_[tree_.root];
+    const StationSetups& root = stations[tree.root];
     for (std::uint32_t design = 0; design < root.size(); ++design) {
       const double score_n = root.required_n[design];
       if (hopeless(score_n)) break;
-      chosen_[tree_.root] = {design, 0};
+      chosen[tree.root] = {design, 0};
       choose(0, score_n);
     }
     std::vector<Choice> sorted;
@@ -209,10 +211,10 @@ class BestFirst : Walk {
 
  private:
   [[nodiscard]] Choice in_least_moved_stances(Choice choice) {
-    chosen_ = choice.stations;
+    chosen = choice.stations;
     const PartPlace place = part_place();
-    for (std::size_t i = 0; i < tree_.links.size(); ++i) {
-      Partner& partner = choice.stations[tree_.links[i].far];
+    for (std::size_t i = 0; i < tree.links.size(); ++i) {
+      Partner& partner = choice.stations[tree.links[i].far];
       partner.stance = least_moved(i, partner, place).value_or(partner.stance);
     }
     return choice;
@@ -223,16 +225,16 @@ class BestFirst : Walk {
   }
 
   void choose(std::size_t link, double score_n) {
-    if (link >= known_after_ && !chosen_reach(link, part_place())) return;
-    if (link == tree_.links.size()) {
-      keep({chosen_, score_n});
+    if (link >= known_after && !chosen_reach(link, part_place())) return;
+    if (link == tree.links.size()) {
+      keep({chosen, score_n});
       return;
     }
-    const StationSetups& station = stations_[tree_.links[link].far];
+    const StationSetups& station = stations[tree.links[link].far];
     for (const Partner& partner : partners_at(link)) {
       const double with_n = std::max(score_n, station.required_n[partner.design]);
       if (hopeless(with_n)) break;
-      chosen_[tree_.links[link].far] = partner;
+      chosen[tree.links[link].far] = partner;
       choose(link + 1, with_n);
     }
   }

@@ -16,21 +16,33 @@ std::vector<std::size_t> way(std::size_t root, std::size_t station, const std::v
   return stations;
 }
 
-}  // namespace
-
-TreeOutcome handoff_tree(std::size_t stations, const std::vector<StationPair>& handoffs,
-                         const std::vector<std::size_t>& first) {
+/// Handoffs of each station.
+std::vector<std::vector<std::size_t>> handoffs_at(std::size_t stations,
+                                                  const std::vector<StationPair>& handoffs) {
   std::vector<std::vector<std::size_t>> at(stations);
   for (std::size_t i = 0; i < handoffs.size(); ++i) {
     at[handoffs[i].giver].push_back(i);
     at[handoffs[i].receiver].push_back(i);
   }
-  TreeOutcome outcome;
+  return at;
+}
+
+std::size_t busiest(const std::vector<std::vector<std::size_t>>& at, const std::vector<std::size_t>& first) {
   const auto busier = [](const auto& a, const auto& b) { return a.size() < b.size(); };
-  outcome.tree.root = static_cast<std::size_t>(std::max_element(at.begin(), at.end(), busier) - at.begin());
+  auto root = static_cast<std::size_t>(std::ranges::max_element(at, busier) - at.begin());
   for (const std::size_t station : first) {
-    if (at[station].size() == at[outcome.tree.root].size()) outcome.tree.root = station;
+    if (at[station].size() == at[root].size()) root = station;
   }
+  return root;
+}
+
+}  // namespace
+
+TreeOutcome handoff_tree(std::size_t stations, const std::vector<StationPair>& handoffs,
+                         const std::vector<std::size_t>& first) {
+  const auto at = handoffs_at(stations, handoffs);
+  TreeOutcome outcome;
+  outcome.tree.root = busiest(at, first);
 
   std::vector<std::size_t> parent(stations);
   std::vector<std::size_t> by(stations, handoffs.size());
