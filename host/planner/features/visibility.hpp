@@ -24,6 +24,6 @@ std::vector<Stretch> jumping_stretches(const geometry::Surface& surface, const C
 
 /// Adjacent stretches with the same free side as one, across angle 0 of a circle too, where the joined
 /// stretch ends beyond the circumference.
-std::vector<Stretch> joined(std::vector<Stretch> stretches, const Carrier& carrier);
+std::vector<Stretch> joined(const std::vector<Stretch>& stretches, const Carrier& carrier);
 
 }  // namespace pinjaw::planner
