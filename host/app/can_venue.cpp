@@ -14,10 +14,12 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kBitsPerSecond = 500'000;  // the contract's; an interface need not know its rate (vcan has none)
+constexpr double kBitsPerSecond =
+    500'000;  // the contract's; an interface need not know its rate (vcan has none)
 
 std::int64_t since_1970_us() {
-  return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch())
+  return std::chrono::duration_cast<std::chrono::microseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
       .count();
 }
 
@@ -83,7 +85,8 @@ class CanVenue final : public Venue {
 
 }  // namespace
 
-base::Expected<std::unique_ptr<Venue>> open_can_venue(std::string_view interface, const std::string& world_path) {
+base::Expected<std::unique_ptr<Venue>> open_can_venue(std::string_view interface,
+                                                      const std::string& world_path) {
   auto bus = socketcan::SocketBus::open(std::string(interface), {});
   if (!bus) return base::failure(bus.error().message);
   std::unique_ptr<bench::WorldPort> world;

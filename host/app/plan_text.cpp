@@ -51,7 +51,8 @@ std::string reasons_text(const planner::Losses& losses, const std::string& phase
 std::string pins_text(const model::Design& design) {
   std::string text;
   for (const model::PinDesign& pin : design.pins) {
-    text += fmt::format(" {}-C{}-R{}", pin.hole.jaw == model::JawSide::Left ? 'L' : 'R', pin.hole.column, pin.hole.row);
+    text += fmt::format(" {}-C{}-R{}", pin.hole.jaw == model::JawSide::Left ? 'L' : 'R', pin.hole.column,
+                        pin.hole.row);
   }
   return text;
 }
@@ -82,12 +83,13 @@ std::string losses_text(const planner::Plan& plan) {
 
 std::string designs_text(const planner::Plan& plan, std::size_t at_most) {
   if (plan.designs.empty()) return "no design holds the part\n";
-  std::string text = fmt::format("{:<10} {:>5} {:>9} {:>9}  {:<12} pins\n", "design", "split", "squeeze N", "margin N",
-                                 "critical");
+  std::string text = fmt::format("{:<10} {:>5} {:>9} {:>9}  {:<12} pins\n", "design", "split", "squeeze N",
+                                 "margin N", "critical");
   for (std::size_t i = 0; i < std::min(at_most, plan.designs.size()); ++i) {
     const model::Design& design = plan.designs[i];
-    text += fmt::format("{:<10} {:>5} {:>9.1f} {:>9.1f}  {:<12}{}\n", design.id, model::to_string(design.split),
-                        design.squeeze.required_n, design.squeeze.margin_n, design.squeeze.critical, pins_text(design));
+    text += fmt::format("{:<10} {:>5} {:>9.1f} {:>9.1f}  {:<12}{}\n", design.id,
+                        model::to_string(design.split), design.squeeze.required_n, design.squeeze.margin_n,
+                        design.squeeze.critical, pins_text(design));
   }
   if (plan.designs.size() > at_most) text += fmt::format("… and {} more\n", plan.designs.size() - at_most);
   return text;

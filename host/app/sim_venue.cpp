@@ -29,7 +29,11 @@ node::Figures figures_of(const model::Station& station) {
 class SimVenue final : public Venue {
  public:
   SimVenue(const model::Cell& cell, std::uint64_t seed)
-      : wire_({.seed = seed}), host_end_(wire_.open()), ends_(open_ends(cell)), world_(members(cell), seed), port_([this](const bench::Request& request) { return world_.handle(request); }) {
+      : wire_({.seed = seed}),
+        host_end_(wire_.open()),
+        ends_(open_ends(cell)),
+        world_(members(cell), seed),
+        port_([this](const bench::Request& request) { return world_.handle(request); }) {
     wire_.on_frame([this](const bus::Received& received) {
       log_ += bus::to_log_line({received.time_us, "sim0", received.frame}) + "\n";
     });

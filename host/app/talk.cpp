@@ -18,9 +18,11 @@ std::uint16_t fresh_epoch() {
 std::unique_ptr<Talk> Talk::open(Context& context) {
   const auto interface = can_interface(context.bus);
   if (!interface) {
-    context.fail(ExitCode::Usage,
-                 fmt::format("{} is no bus that other programs can reach: use --bus can:IFACE (sim: lives inside pinjaw run)",
-                             context.bus));
+    context.fail(
+        ExitCode::Usage,
+        fmt::format(
+            "{} is no bus that other programs can reach: use --bus can:IFACE (sim: lives inside pinjaw run)",
+            context.bus));
     return nullptr;
   }
   auto venue = open_can_venue(*interface, "");
@@ -32,7 +34,9 @@ std::unique_ptr<Talk> Talk::open(Context& context) {
 }
 
 Talk::Talk(Context& context, std::unique_ptr<Venue> venue)
-    : context_(context), venue_(std::move(venue)), client_(venue_->bus(), {.epoch = fresh_epoch(), .speaks = true}) {}
+    : context_(context),
+      venue_(std::move(venue)),
+      client_(venue_->bus(), {.epoch = fresh_epoch(), .speaks = true}) {}
 
 void Talk::tick() {
   now_us_ = venue_->tick_us();
@@ -54,7 +58,8 @@ bool Talk::wait_for(double seconds, const std::string& otherwise, const std::fun
   const std::int64_t until_us = now_us_ + static_cast<std::int64_t>(seconds * 1e6);
   while (!condition()) {
     if (now_us_ >= until_us || client_.bus_failure()) {
-      context_.fail(ExitCode::Unavailable, client_.bus_failure() ? client_.bus_failure()->message : otherwise);
+      context_.fail(ExitCode::Unavailable,
+                    client_.bus_failure() ? client_.bus_failure()->message : otherwise);
       return false;
     }
     tick();
@@ -65,13 +70,17 @@ bool Talk::wait_for(double seconds, const std::string& otherwise, const std::fun
 ExitCode code_of(const jaw_client::Outcome& outcome) {
   using jaw_client::OutcomeKind;
   switch (outcome.kind) {
-    case OutcomeKind::Done: return ExitCode::Done;
-    case OutcomeKind::ForceRefused: return ExitCode::ForceLimit;
+    case OutcomeKind::Done:
+      return ExitCode::Done;
+    case OutcomeKind::ForceRefused:
+      return ExitCode::ForceLimit;
     case OutcomeKind::Silent:
-    case OutcomeKind::BusFailed: return ExitCode::Unavailable;
+    case OutcomeKind::BusFailed:
+      return ExitCode::Unavailable;
     case OutcomeKind::Pending:
     case OutcomeKind::Refused:
-    case OutcomeKind::Fault: break;
+    case OutcomeKind::Fault:
+      break;
   }
   return ExitCode::Refused;
 }

@@ -10,7 +10,8 @@
 
 namespace pinjaw::app {
 
-/// A host of its own for one command: a heartbeat with a fresh epoch on a CAN interface, for as long as it lives.
+/// A host of its own for one command: a heartbeat with a fresh epoch on a CAN interface, for as long as it
+/// lives.
 class Talk {
  public:
   /// Nothing, with the exit code set, where the bus cannot be opened (sim: lives inside run and demo alone).
@@ -21,8 +22,8 @@ class Talk {
 
   [[nodiscard]] jaw_client::Client& client() { return client_; }
 
-  /// Begins an operation and waits for its end. False, with the reason told and the exit code set, where it did not
-  /// come to a good one.
+  /// Begins an operation and waits for its end. False, with the reason told and the exit code set, where it
+  /// did not come to a good one.
   bool carry_out(std::uint8_t node, const std::function<void(jaw_client::Client&)>& begin);
 
   /// Waits until `condition` holds; false, with exit code 5 and `otherwise`, after `seconds`.

@@ -39,9 +39,10 @@ class Venue {
 /// An in-process bus in virtual time with a simulated controller for each station of `cell`.
 std::unique_ptr<Venue> open_sim_venue(const model::Cell& cell, std::uint64_t seed);
 
-/// A CAN interface of this machine, and the world served at `world_path` (none where it is empty). Fails with a
-/// sentence that tells the way out.
-base::Expected<std::unique_ptr<Venue>> open_can_venue(std::string_view interface, const std::string& world_path);
+/// A CAN interface of this machine, and the world served at `world_path` (none where it is empty). Fails with
+/// a sentence that tells the way out.
+base::Expected<std::unique_ptr<Venue>> open_can_venue(std::string_view interface,
+                                                      const std::string& world_path);
 
 /// What follows "can:" in `bus`; nothing where it names another kind.
 std::optional<std::string> can_interface(std::string_view bus);
