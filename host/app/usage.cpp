@@ -46,15 +46,15 @@ std::string sentence(const CLI::App& app, const CLI::Error& error) {
   const CLI::App& innermost = *chain.back();
   const std::vector<std::string> extra = app.remaining(true);
   const std::vector<std::string> commands = commands_of(innermost);
+  if (!commands.empty() && !extra.empty() && !extra.front().starts_with('-')) {
+    return fmt::format("there is no command {} {}{}", spoken(chain), extra.front(),
+                       base::did_you_mean(extra.front(), commands));
+  }
   const auto option =
       std::ranges::find_if(extra, [](const std::string& word) { return word.starts_with('-'); });
   if (option != extra.end()) {
     const std::string name = option->substr(0, option->find('='));
     return fmt::format("there is no option {}{}", name, base::did_you_mean(name, options_of(chain)));
-  }
-  if (!commands.empty() && !extra.empty()) {
-    return fmt::format("there is no command {} {}{}", spoken(chain), extra.front(),
-                       base::did_you_mean(extra.front(), commands));
   }
   if (!commands.empty() && error.get_name() == "RequiredError") {
     return fmt::format("which command? {} takes {}", spoken(chain), fmt::join(commands, ", "));

@@ -1,11 +1,12 @@
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <random>
 
+#include "host/app/choices.hpp"
 #include "host/app/commands/commands.hpp"
 #include "host/app/venue.hpp"
 #include "host/cell/cell_plan.hpp"
@@ -36,9 +37,11 @@ struct Prepared {
   std::vector<sequence::StepScript> scripts;
 };
 
-/// Designs of the cell from a plan that was written before; nothing where it is no such plan or of another cell.
+/// Designs of the cell from a plan that was written before; nothing where it is no such plan or of another
+/// cell.
 std::optional<std::vector<cell::CellDesign>> saved_designs(Context& context, const std::string& file,
-                                                           const model::Cell& cell, const planner::Scene& scene) {
+                                                           const model::Cell& cell,
+                                                           const planner::Scene& scene) {
   auto plan = cell::read_cell_plan(file);
   if (!plan) {
     context.fail(plan.error(), "nothing was run");
@@ -70,8 +73,9 @@ std::optional<cell::CellDesign> choose_design(Context& context, const Options& o
   const auto designs = options.plan.empty() ? planned_designs(context, sequence.cell, sequence.design)
                                             : saved_designs(context, options.plan, sequence.cell, scene);
   if (!designs) return std::nullopt;
-  const auto chosen = sequence.design == "best" ? designs->begin()
-                                                : std::ranges::find(*designs, sequence.design, &cell::CellDesign::id);
+  const auto chosen = sequence.design == "best"
+                          ? designs->begin()
+                          : std::ranges::find(*designs, sequence.design, &cell::CellDesign::id);
   if (chosen == designs->end()) {
     context.fail(ExitCode::No, designs->empty() ? "no combination of designs fits all handoffs of the cell"
                                                 : "the cell has no design " + sequence.design);
@@ -104,11 +108,13 @@ std::optional<Prepared> prepare(Context& context, const Options& options) {
     context.fail(ExitCode::BadFile, file + ": " + scripts.error().message);
     return std::nullopt;
   }
-  return Prepared{std::move(*sequence), std::move(*scene), std::move(*design), std::move(*crew), std::move(*scripts)};
+  return Prepared{std::move(*sequence), std::move(*scene), std::move(*design), std::move(*crew),
+                  std::move(*scripts)};
 }
 
 bool drops_frames(const model::Sequence& sequence) {
-  return std::ranges::any_of(sequence.faults, [](const model::ScriptedFault& fault) { return fault.drop_share > 0; });
+  return std::ranges::any_of(sequence.faults,
+                             [](const model::ScriptedFault& fault) { return fault.drop_share > 0; });
 }
 
 std::unique_ptr<Venue> open_venue(Context& context, const model::Sequence& sequence) {
@@ -138,7 +144,8 @@ std::string summary_of(const sequence::RunReport& report) {
   std::string text = fmt::format("{:<32} {:>8} {:>8}  result\n", "step", "from s", "to s");
   for (const sequence::StepReport& step : report.steps) {
     const std::string again = step.tries > 1 ? fmt::format(" (try {})", step.tries) : "";
-    text += fmt::format("{:<32} {:>8.2f} {:>8.2f}  {}{}\n", step.step, step.from_s, step.to_s, step.result, again);
+    text += fmt::format("{:<32} {:>8.2f} {:>8.2f}  {}{}\n", step.step, step.from_s, step.to_s, step.result,
+                        again);
   }
   if (report.plant) {
     for (const bench::NodeTruth& node : report.plant->nodes) {
@@ -150,7 +157,8 @@ std::string summary_of(const sequence::RunReport& report) {
                         report.plant->dropped ? "WAS DROPPED" : "was never dropped",
                         report.plant->min_holders.value_or(0));
   }
-  if (report.undersampled) text += "undersampled: a drawn load needed more squeeze than the plan's required_n\n";
+  if (report.undersampled)
+    text += "undersampled: a drawn load needed more squeeze than the plan's required_n\n";
   text += fmt::format("{} frames", report.bus.frames);
   if (report.bus.load_percent) text += fmt::format(", {:.1f} % bus load", *report.bus.load_percent);
   return text + fmt::format("\n{}", report.result == sequence::RunResult::Done ? "done" : "aborted");
@@ -163,16 +171,21 @@ ExitCode code_of(const sequence::RunReport& report, const std::optional<sequence
   }
   if (!trouble) return ExitCode::No;  // the host was killed
   switch (*trouble) {
-    case sequence::Trouble::ForceLimit: return ExitCode::ForceLimit;
-    case sequence::Trouble::Silent: return ExitCode::Unavailable;
-    case sequence::Trouble::Refused: return ExitCode::Refused;
-    case sequence::Trouble::World: break;
+    case sequence::Trouble::ForceLimit:
+      return ExitCode::ForceLimit;
+    case sequence::Trouble::Silent:
+      return ExitCode::Unavailable;
+    case sequence::Trouble::Refused:
+      return ExitCode::Refused;
+    case sequence::Trouble::World:
+      break;
   }
   return ExitCode::No;
 }
 
 void print_script(const Context& context, const Prepared& prepared) {
-  context.print(fmt::format("cell design {}, {:.1f} N at most", prepared.design.id, prepared.design.max_required_n));
+  context.print(
+      fmt::format("cell design {}, {:.1f} N at most", prepared.design.id, prepared.design.max_required_n));
   for (const sequence::StepScript& script : prepared.scripts) {
     const std::string needs = script.needed_n > 0 ? fmt::format(", needs up to {:.1f} N (planned {:.1f} N)",
                                                                 script.needed_n, script.required_n)
@@ -182,6 +195,8 @@ void print_script(const Context& context, const Prepared& prepared) {
 }
 
 void run_sequence(Context& context, const Options& options) {
+  if (!context.can_write(options.report, options.sequence)) return;
+  if (!context.can_write(options.log, options.sequence)) return;
   auto prepared = prepare(context, options);
   if (!prepared) return;
   if (options.dry) return print_script(context, *prepared);
@@ -213,8 +228,13 @@ void run_sequence(Context& context, const Options& options) {
 void add_run(CLI::App& app, Context& context) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("run", "play a scripted sequence on the controllers of a cell");
-  command->add_option("SEQUENCE", options->sequence, "sequence file")->required();
-  command->add_option("--plan", options->plan, "cell plan of `pinjaw cell -o`; without it the cell is planned anew")
+  command->add_option("SEQUENCE", options->sequence, "sequence file")
+      ->type_name("")
+      ->check(file_name())
+      ->required();
+  command
+      ->add_option("--plan", options->plan,
+                   "cell plan of `pinjaw cell -o`; without it the cell is planned anew")
       ->type_name("FILE");
   command->add_option("--report", options->report, "run report JSON")->type_name("FILE");
   command->add_option("--log", options->log, "every frame, as candump writes them")->type_name("FILE");

@@ -1,0 +1,141 @@
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/host/app/child.hpp"
+
+/// plan, planar, why and check on small parts.
+namespace pinjaw::app_test {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+const std::string kTask = shipped("configs/tasks/l-plate.yaml");
+
+json plan_of(const std::string& options) {
+  const Ran ran = Bench().pinjaw("plan " + kTask + " " + options);
+  EXPECT_EQ(ran.exit_code, 0) << ran.err;
+  return json::parse(ran.out);
+}
+
+TEST(Plan, keeps_as_many_designs_as_asked_and_counts_all) {
+  const json all = plan_of("--top all");
+  const json three = plan_of("--top 3");
+  EXPECT_EQ(all.at("designs").size(), all.at("funnel").at("strong"));
+  EXPECT_EQ(three.at("designs").size(), 3U);
+  EXPECT_EQ(three.at("funnel"), all.at("funnel"));
+  EXPECT_EQ(three.at("designs")[2], all.at("designs")[2]);
+}
+
+TEST(Plan, is_the_same_whatever_the_threads) {
+  EXPECT_EQ(plan_of("--threads 1"), plan_of("--threads 3"));
+}
+
+TEST(Plan, needs_no_more_squeeze_with_the_exact_cone_than_with_the_pyramid) {
+  const json cone = plan_of("--friction cone --top 1");
+  EXPECT_EQ(cone.at("friction").at("model"), "cone");
+  EXPECT_LE(cone.at("designs")[0].at("squeeze").at("required_n"),
+            plan_of("--top 1").at("designs")[0].at("squeeze").at("required_n"));
+}
+
+TEST(Plan, loads_no_more_fixtures_with_pins_as_tall_as_the_part) {
+  const json flat = plan_of("--loading 2d");
+  EXPECT_EQ(flat.at("loading"), "2d");
+  EXPECT_LE(flat.at("funnel").at("loadable"), plan_of("").at("funnel").at("loadable"));
+}
+
+TEST(Plan, of_a_part_that_no_force_can_hold_exits_1_with_the_reason) {
+  const Bench bench;
+  bench.write("task.yaml",
+              "task: heavy\npart: {file: " + shipped("configs/parts/l-plate.yaml") +
+                  ", mass_kg: 0.1}\nkit: " + shipped("configs/kits/acc-pedestal.yaml") +
+                  "\nfriction: 0.2\ndisturbances:\n  - force: {name: ram, at_mm: [20, 10, 6], force_n: "
+                  "[0, 0, -90000]}\n");
+  const Ran ran = bench.pinjaw("plan task.yaml -o plan.json");
+  EXPECT_EQ(ran.exit_code, 1);
+  EXPECT_THAT(ran.out, HasSubstr("no design holds the part"));
+  EXPECT_EQ(json::parse(bench.read("plan.json")).at("funnel").at("strong"), 0);
+  const Ran why = bench.pinjaw("why task.yaml");
+  EXPECT_EQ(why.exit_code, 1);
+  EXPECT_THAT(why.out, HasSubstr("left out: needs more than the usable force"));
+  EXPECT_EQ(bench.pinjaw("why task.yaml --design best").exit_code, 1);
+  EXPECT_EQ(bench.pinjaw("check plan.json").exit_code, 0);
+  EXPECT_THAT(bench.pinjaw("sheet plan.json -o a.svg").err, HasSubstr("plan.json has no designs"));
+}
+
+class KnownCase : public testing::TestWithParam<const char*> {};
+
+TEST_P(KnownCase, has_as_many_planar_fixtures_as_known) {
+  const std::string folder = shipped("tests/host/planner/planar/cases/") + GetParam();
+  const Bench bench;
+  const Ran expected = bench.run("/bin/cat", folder + "/expected.json");
+  const Ran ran = bench.pinjaw("planar " + folder + "/profile.yaml --kit " + folder + "/kit.yaml");
+  EXPECT_EQ(ran.exit_code, 0);
+  const json document = json::parse(ran.out);
+  EXPECT_EQ(document.at("format"), "pinjaw-planar/1");
+  EXPECT_EQ(document.at("count"), document.at("fixtures").size());
+  EXPECT_EQ(document.at("count"), json::parse(expected.out).at("count"));
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, KnownCase,
+                         testing::Values("arcs", "lshape", "pentagon", "star12", "triangle"));
+
+TEST(Why, tells_the_losses_and_what_binds_a_design_as_text_and_as_json) {
+  const Bench bench;
+  EXPECT_THAT(bench.pinjaw("why " + kTask).out, HasSubstr("left out: "));
+  EXPECT_THAT(bench.pinjaw("why " + kTask + " --design best").out, HasSubstr("pushes"));
+  const json losses = json::parse(bench.pinjaw("why " + kTask + " --json").out);
+  EXPECT_TRUE(losses.contains("funnel") && losses.contains("losses"));
+  const json best = json::parse(bench.pinjaw("why " + kTask + " --design best --json").out);
+  EXPECT_GE(best.at("contacts").size(), 4U);
+  const Ran none = bench.pinjaw("why " + kTask + " --design nosuch");
+  EXPECT_EQ(none.exit_code, 1);
+  EXPECT_THAT(none.err, HasSubstr("none is called nosuch"));
+}
+
+class Check : public testing::Test {
+ protected:
+  Check() { bench_.write("plan.json", plan_of("--top 3").dump()); }
+  Bench bench_;
+};
+
+TEST_F(Check, finds_that_a_plan_holds) {
+  const Ran ran = bench_.pinjaw("check plan.json");
+  EXPECT_EQ(ran.exit_code, 0);
+  EXPECT_THAT(ran.out, HasSubstr("claims of 3 designs hold"));
+  EXPECT_THAT(bench_.pinjaw("check plan.json --design best --all").out, HasSubstr("ok   "));
+}
+
+TEST_F(Check, names_the_claim_that_was_tampered_with) {
+  json plan = json::parse(bench_.read("plan.json"));
+  plan["designs"][1]["squeeze"]["required_n"] = 0.01;
+  bench_.write("plan.json", plan.dump());
+  const Ran ran = bench_.pinjaw("check plan.json");
+  EXPECT_EQ(ran.exit_code, 1);
+  EXPECT_THAT(ran.out, HasSubstr("NO   " + plan["designs"][1]["id"].get<std::string>()));
+  EXPECT_EQ(bench_.pinjaw("check plan.json --design best").exit_code,
+            1);  // the order of the designs is wrong now
+  const Ran document = bench_.pinjaw("check plan.json --json");
+  EXPECT_EQ(document.exit_code, 1);
+  EXPECT_EQ(json::parse(document.out).at("holds"), false);
+  EXPECT_FALSE(json::parse(document.out).at("claims").empty());
+}
+
+TEST_F(Check, of_a_design_that_is_not_there_says_so) {
+  const Ran ran = bench_.pinjaw("check plan.json --design nosuch");
+  EXPECT_EQ(ran.exit_code, 1);
+  EXPECT_THAT(ran.err, HasSubstr("plan.json has 3 designs, none is called nosuch"));
+}
+
+TEST_F(Check, of_a_plan_whose_part_is_gone_names_the_part) {
+  json plan = json::parse(bench_.read("plan.json"));
+  plan["part"]["file"] = "gone.yaml";
+  bench_.write("plan.json", plan.dump());
+  const Ran ran = bench_.pinjaw("check plan.json");
+  EXPECT_EQ(ran.exit_code, 3);
+  EXPECT_THAT(ran.err, HasSubstr("gone.yaml"));
+}
+
+}  // namespace
+}  // namespace pinjaw::app_test
