@@ -47,11 +47,11 @@ std::string name_of(const model::Hole& hole) {
   return fmt::format("{}-C{}-R{}", hole.jaw == model::JawSide::Left ? 'L' : 'R', hole.column, hole.row);
 }
 
-Vector2d p_PFoot_mm(const model::Design& design, const model::PinDesign& pin) {
+Vector2d foot_in_part_mm(const model::Design& design, const model::PinDesign& pin) {
   return design.part_pose.inverse() * pin.contact_mm;
 }
 
-Vector2d n_P(const model::Design& design, const model::PinDesign& pin) {
+Vector2d normal_in_part(const model::Design& design, const model::PinDesign& pin) {
   return design.part_pose.inverse().turned(pin.normal);
 }
 
@@ -100,7 +100,7 @@ void check_contacts(const Plan& plan, const Scene& scene, const model::Design& d
     report.claim(name + " pushes the part inwards", closing > 0,
                  fmt::format("share of closing {:.6f}", closing));
 
-    const Foot foot{p_PFoot_mm(design, pin), n_P(design, pin)};
+    const Foot foot{foot_in_part_mm(design, pin), normal_in_part(design, pin)};
     const double plate_mm = plate_top_mm(plan.kit, scene.turned.surface, scene.attached);
     const auto height = pin_height(scene.turned.surface, plan.kit.pins, plate_mm, foot);
     report.claim(name + " has room to stand", height.has_value(),
@@ -160,7 +160,7 @@ PlanarFixture fixture_of(const Plan& plan, const model::Design& design) {
     model::Hole hole = pin.hole;
     hole.column -= column[static_cast<std::size_t>(hole.jaw)];
     hole.row -= row;
-    fixture.pins[i] = {hole, pin.feature, 0, pin.foot_margin_mm, p_PFoot_mm(design, pin), n_P(design, pin)};
+    fixture.pins[i] = {hole, pin.feature, 0, pin.foot_margin_mm, foot_in_part_mm(design, pin), normal_in_part(design, pin)};
   }
   return fixture;
 }
