@@ -53,14 +53,15 @@ testing::TestCell agreeable_cell(std::size_t designs) {
 }
 
 TEST(Join, of_eight_million_combinations_holds_but_the_pairs_and_the_best) {
-  const testing::TestCell cell = agreeable_cell(200);
+  constexpr std::int64_t kDesigns = 200;
+  constexpr std::int64_t kOneByteEach = kDesigns * kDesigns * kDesigns;
+  const testing::TestCell cell = agreeable_cell(kDesigns);
   const std::int64_t before = held_bytes;
   most_bytes = before;
   const testing::Joined answer = testing::joined(cell, 50);
-  EXPECT_EQ(answer.result.count, 200 * 200 * 200);
+  EXPECT_EQ(answer.result.count, kDesigns * kDesigns * kDesigns);
   EXPECT_EQ(answer.result.best.size(), 50U);
-  constexpr std::int64_t kOneByteEach = 200 * 200 * 200;
-  constexpr std::int64_t kSetups = 200 * 3 * 12 * static_cast<std::int64_t>(sizeof(cell::Setup));
+  constexpr std::int64_t kSetups = kDesigns * 3 * 12 * static_cast<std::int64_t>(sizeof(cell::Setup));
   EXPECT_LT(most_bytes - before, kSetups + kOneByteEach / 4);
 }
 

@@ -28,7 +28,7 @@ struct Shipped {
 };
 
 const Shipped& shipped() {
-  static const Shipped kShipped = [] {
+  static const Shipped once = [] {
     const auto cell = config::read_cell(std::filesystem::path(PINJAW_SOURCE_DIR) / "configs/cells/acc.yaml");
     if (!cell) throw std::runtime_error(base::render(cell.error(), "no cell"));
     const auto plan = make_cell_plan(*cell, {});
@@ -40,7 +40,7 @@ const Shipped& shipped() {
     }
     return shipped;
   }();
-  return kShipped;
+  return once;
 }
 
 std::size_t index_of(const model::Cell& cell, const std::string& name) {
@@ -56,7 +56,7 @@ planner::FingerSet fingers(const CellDesign& design, std::size_t station) {
 
 /// The part in the handoff frame, written out in space: turned to the gripper, posed, the station adjusted,
 /// turned back (DESIGN 2).
-Eigen::Isometry3d X_HP(const StationDesign& station, Side side) {
+Eigen::Isometry3d part_in_handoff_frame_of(const StationDesign& station, Side side) {
   const auto spatial = [](double theta_rad, const geometry::Vector2d& t_mm) {
     return Eigen::Isometry3d(Eigen::Translation3d(t_mm.x(), t_mm.y(), 0) *
                              Eigen::AngleAxisd(theta_rad, Vector3d::UnitZ()));
@@ -91,11 +91,12 @@ TEST(ShippedCell, every_handoff_of_its_designs_is_free_of_interference) {
 
 TEST(ShippedCell, adjustments_are_within_their_bounds_and_bring_the_part_to_one_place) {
   for (const CellDesign& design : shipped().plan.designs) {
-    const Eigen::Isometry3d first = X_HP(design.stations[0], shipped().cell.stations[0].task.side);
+    const Eigen::Isometry3d first =
+        part_in_handoff_frame_of(design.stations[0], shipped().cell.stations[0].task.side);
     for (std::size_t i = 0; i < design.stations.size(); ++i) {
       const model::Station& station = shipped().cell.stations[i];
       EXPECT_TRUE(planner::within(design.stations[i].adjust, station.adjust)) << design.id << station.name;
-      const Eigen::Isometry3d here = X_HP(design.stations[i], station.task.side);
+      const Eigen::Isometry3d here = part_in_handoff_frame_of(design.stations[i], station.task.side);
       EXPECT_NEAR((here.matrix() - first.matrix()).cwiseAbs().maxCoeff(), 0, 1e-8) << design.id;
     }
   }

@@ -30,15 +30,15 @@ model::Profile pentagon() {
 }
 
 std::vector<PlanarFixture> fixtures(planner::Twins twins) {
-  static const model::Profile kProfile = pentagon();
+  static const model::Profile profile = pentagon();
   model::Kit kit;
   kit.grid = {11, 3, 4, 5.5};
   kit.pins.radius_mm = kRadius_mm;
   kit.jaws.separation_mm = {0, 60};
   planner::PlanarOptions options;
-  options.outline = &kProfile;
+  options.outline = &profile;
   options.twins = twins;
-  return planner::plan_planar_fixtures(model::features_of(kProfile), kit, options).fixtures;
+  return planner::plan_planar_fixtures(model::features_of(profile), kit, options).fixtures;
 }
 
 using Places = std::array<Vector2d, 3>;

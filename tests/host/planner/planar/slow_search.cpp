@@ -19,8 +19,18 @@ using geometry::Vector2d;
 
 constexpr double kTurn = 2 * std::numbers::pi;
 
-Vector2d turned(double a, const Vector2d& v) {
-  return geometry::Pose2{a, Vector2d::Zero()}.turned(v);
+/// An angle with its sine and cosine, which every pair of one step shares.
+struct Turn {
+  double rad = 0;
+  Vector2d x_axis = Vector2d::UnitX();
+
+  explicit Turn(double angle_rad) : rad(angle_rad), x_axis(geometry::direction(angle_rad)) {}
+};
+Vector2d turned(const Turn& by, const Vector2d& v) {
+  return {by.x_axis.x() * v.x() - by.x_axis.y() * v.y(), by.x_axis.y() * v.x() + by.x_axis.x() * v.y()};
+}
+Vector2d turned_back(const Turn& by, const Vector2d& v) {
+  return {by.x_axis.x() * v.x() + by.x_axis.y() * v.y(), by.x_axis.x() * v.y() - by.x_axis.y() * v.x()};
 }
 double cross(const Vector2d& u, const Vector2d& v) {
   return u.x() * v.y() - u.y() * v.x();
@@ -87,10 +97,10 @@ class Search {
 
   std::vector<SlowFixture> run() {
     const double start = steps_.from_rad + 0.5 * step();
-    std::vector<Alive> before[2] = {alive(start, true), alive(start, false)};
+    std::vector<Alive> before[2] = {alive(Turn(start), true), alive(Turn(start), false)};
     for (int i = 0; i < steps_.count; ++i) {
       const double lo = start + i * step();
-      std::vector<Alive> after[2] = {alive(lo + step(), true), alive(lo + step(), false)};
+      std::vector<Alive> after[2] = {alive(Turn(lo + step()), true), alive(Turn(lo + step()), false)};
       pairs(lo, before, after);
       triples(lo, before[0], after[0]);
       before[0] = std::move(after[0]);
@@ -117,7 +127,7 @@ class Search {
   }
 
   /// Part origins from which the feature touches a pin at `pin_mm`.
-  [[nodiscard]] Locus locus(int feature, double theta, const Vector2d& pin_mm) const {
+  [[nodiscard]] Locus locus(int feature, const Turn& theta, const Vector2d& pin_mm) const {
     const model::Feature& f = features_[static_cast<std::size_t>(feature)];
     const double r = kit_.pins.radius_mm;
     Locus result;
@@ -136,10 +146,10 @@ class Search {
 
   /// Whether the pin stands on the feature's piece with room `slack_mm`, and its outward normal in the jaw
   /// frame.
-  [[nodiscard]] std::optional<Vector2d> contact(int feature, double theta, const Vector2d& pin_mm,
+  [[nodiscard]] std::optional<Vector2d> contact(int feature, const Turn& theta, const Vector2d& pin_mm,
                                                 const Vector2d& o_mm, double slack_mm) const {
     const model::Feature& f = features_[static_cast<std::size_t>(feature)];
-    const Vector2d q = turned(-theta, pin_mm - o_mm);
+    const Vector2d q = turned_back(theta, pin_mm - o_mm);
     if (const auto* s = std::get_if<Segment>(&f.curve)) {
       const Vector2d t = (s->b_mm - s->a_mm).normalized();
       const double at = t.dot(q - s->a_mm);
@@ -154,13 +164,13 @@ class Search {
     return turned(theta, f.bulge == model::Bulge::Convex ? u : Vector2d(-u));
   }
 
-  [[nodiscard]] std::optional<Vector2d> origin(const Key& key, double theta, bool left) const {
+  [[nodiscard]] std::optional<Vector2d> origin(const Key& key, const Turn& theta, bool left) const {
     return crossings(locus(key.a, theta, Vector2d::Zero()),
                      locus(key.b, theta, apart(key.offset, left)))[static_cast<std::size_t>(key.branch)];
   }
 
   /// All pairs that hold, give or take a little, at `theta`.
-  [[nodiscard]] std::vector<Alive> alive(double theta, bool left) const {
+  [[nodiscard]] std::vector<Alive> alive(const Turn& theta, bool left) const {
     constexpr double kSlack_mm = 0.05;
     std::vector<Alive> list;
     const int count = static_cast<int>(features_.size());
@@ -181,9 +191,11 @@ class Search {
     return list;
   }
 
-  /// Each pair that is alive before or after a step, with y at both ends.
+  /// Each pair that is alive before or after a step, with y at both ends of the part of the step in which its
+  /// loci cross: all of it, or up to where they part.
   struct Moving {
     Key key;
+    double from_rad, to_rad;
     double y0, y1;
   };
   [[nodiscard]] std::vector<Moving> moving(double lo, const std::vector<Alive>& before,
@@ -191,30 +203,73 @@ class Search {
     std::map<Key, std::pair<std::optional<double>, std::optional<double>>> both;
     for (const Alive& one : before) both[one.key].first = one.o_mm.y();
     for (const Alive& one : after) both[one.key].second = one.o_mm.y();
+    const Turn at_lo(lo);
+    const Turn at_hi(lo + step());
     std::vector<Moving> list;
     for (auto& [key, y] : both) {
       if (!y.first) {
-        if (const auto o = origin(key, lo, left)) y.first = o->y();
+        if (const auto o = origin(key, at_lo, left)) y.first = o->y();
       }
       if (!y.second) {
-        if (const auto o = origin(key, lo + step(), left)) y.second = o->y();
+        if (const auto o = origin(key, at_hi, left)) y.second = o->y();
       }
-      if (y.first && y.second) list.push_back({key, *y.first, *y.second});
+      double from = lo;
+      double to = lo + step();
+      if (!y.first) y.first = last_y(key, to, from, left);
+      if (!y.second) y.second = last_y(key, from, to, left);
+      if (y.first && y.second) list.push_back({key, from, to, *y.first, *y.second});
     }
     return list;
   }
 
+  /// y where the pair's loci part on the way from `there`, where they cross, to `gone`, which is moved to it.
+  [[nodiscard]] std::optional<double> last_y(const Key& key, double there, double& gone, bool left) const {
+    std::optional<double> y;
+    for (int i = 0; i < 50; ++i) {
+      const double middle = (there + gone) / 2;
+      const auto o = origin(key, Turn(middle), left);
+      if (o) y = o->y();
+      (o ? there : gone) = middle;
+    }
+    gone = there;
+    return y;
+  }
+
+  [[nodiscard]] std::optional<double> y_at(const Moving& pair, double theta, bool left) const {
+    if (theta == pair.from_rad) return pair.y0;
+    if (theta == pair.to_rad) return pair.y1;
+    const auto o = origin(pair.key, Turn(theta), left);
+    return o ? std::optional(o->y()) : std::nullopt;
+  }
+
+  /// The part of the step in which both pairs cross, and how much higher `p` is at its ends.
+  struct Meeting {
+    double from_rad, to_rad;
+    double h0, h1;
+  };
+  [[nodiscard]] std::optional<Meeting> meeting(const Moving& p, const Moving& q, bool q_left) const {
+    const double from = std::max(p.from_rad, q.from_rad);
+    const double to = std::min(p.to_rad, q.to_rad);
+    if (from >= to) return std::nullopt;
+    const auto p0 = y_at(p, from, true);
+    const auto p1 = y_at(p, to, true);
+    const auto q0 = y_at(q, from, q_left);
+    const auto q1 = y_at(q, to, q_left);
+    if (!p0 || !p1 || !q0 || !q1) return std::nullopt;
+    return Meeting{from, to, *p0 - *q0, *p1 - *q1};
+  }
+
   template <typename Difference>
-  std::optional<double> halved(double lo, double hi, const Difference& difference) const {
-    const auto at_lo = difference(lo);
+  std::optional<Turn> halved(double lo, double hi, const Difference& difference) const {
+    const auto at_lo = difference(Turn(lo));
     if (!at_lo) return std::nullopt;
     for (int i = 0; i < 60; ++i) {
       const double middle = (lo + hi) / 2;
-      const auto at = difference(middle);
+      const auto at = difference(Turn(middle));
       if (!at) return std::nullopt;
       ((*at < 0) == (*at_lo < 0) ? lo : hi) = middle;
     }
-    return (lo + hi) / 2;
+    return Turn((lo + hi) / 2);
   }
 
   void pairs(double lo, const std::vector<Alive> (&before)[2], const std::vector<Alive> (&after)[2]) {
@@ -223,22 +278,25 @@ class Search {
     const auto rights = moving(lo, before[1], after[1], false);
     for (const Moving& l : lefts) {
       for (const Moving& r : rights) {
-        const double h0 = (l.y0 - r.y0) / d;
-        const double h1 = (l.y1 - r.y1) / d;
+        const auto both = meeting(l, r, false);
+        if (!both) continue;
+        const double h0 = both->h0 / d;
+        const double h1 = both->h1 / d;
         for (double m = std::ceil(std::min(h0, h1)); m <= std::max(h0, h1); ++m) {
-          const auto root = halved(lo, lo + step(), [&](double theta) -> std::optional<double> {
-            const auto ol = origin(l.key, theta, true);
-            const auto orr = origin(r.key, theta, false);
-            if (!ol || !orr) return std::nullopt;
-            return ol->y() - orr->y() - m * d;
-          });
+          const auto root =
+              halved(both->from_rad, both->to_rad, [&](const Turn& theta) -> std::optional<double> {
+                const auto ol = origin(l.key, theta, true);
+                const auto orr = origin(r.key, theta, false);
+                if (!ol || !orr) return std::nullopt;
+                return ol->y() - orr->y() - m * d;
+              });
           if (root) two_and_two(*root, l.key, r.key, static_cast<int>(m));
         }
       }
     }
   }
 
-  void two_and_two(double theta, const Key& l, const Key& r, int m) {
+  void two_and_two(const Turn& theta, const Key& l, const Key& r, int m) {
     const auto ol = origin(l, theta, true);
     const auto orr = origin(r, theta, false);
     if (ol && orr) judge(theta, pair_pins(l, true, 0), pair_pins(r, false, m), *ol, orr->x());
@@ -254,13 +312,15 @@ class Search {
     for (const Moving& p : list) {
       for (const Moving& q : list) {
         if (p.key.a != q.key.a || p.key.offset >= q.key.offset) continue;
-        if (((p.y0 - q.y0) < 0) == ((p.y1 - q.y1) < 0)) continue;
-        const auto root = halved(lo, lo + step(), [&](double theta) -> std::optional<double> {
-          const auto op = origin(p.key, theta, true);
-          const auto oq = origin(q.key, theta, true);
-          if (!op || !oq) return std::nullopt;
-          return op->y() - oq->y();
-        });
+        const auto both = meeting(p, q, true);
+        if (!both || (both->h0 < 0) == (both->h1 < 0)) continue;
+        const auto root =
+            halved(both->from_rad, both->to_rad, [&](const Turn& theta) -> std::optional<double> {
+              const auto op = origin(p.key, theta, true);
+              const auto oq = origin(q.key, theta, true);
+              if (!op || !oq) return std::nullopt;
+              return op->y() - oq->y();
+            });
         if (!root) continue;
         const auto op = origin(p.key, *root, true);
         const auto oq = origin(q.key, *root, true);
@@ -273,7 +333,7 @@ class Search {
   }
 
   /// Every right pin on every feature and row.
-  void oppose(double theta, const std::vector<Placed>& pins, const Vector2d& o) {
+  void oppose(const Turn& theta, const std::vector<Placed>& pins, const Vector2d& o) {
     for (int feature = 0; feature < static_cast<int>(features_.size()); ++feature) {
       for (int row = -kit_.grid.rows; row < kit_.grid.rows; ++row) {
         const Locus curve = locus(feature, theta, kit_.grid.spacing_mm * Vector2d(0, row));
@@ -307,11 +367,11 @@ class Search {
     if (std::abs(level) > 1) return;
     for (const double sign : {-1.0, 1.0}) {
       const double theta = std::atan2(v.y(), v.x()) + sign * std::acos(level) - std::atan2(n.y(), n.x());
-      slide(theta, {a, b, offset, 0});
+      slide(Turn(theta), {a, b, offset, 0});
     }
   }
 
-  void slide(double theta, const Key& key) {
+  void slide(const Turn& theta, const Key& key) {
     const Locus line = locus(key.a, theta, Vector2d::Zero());
     if (std::abs(line.direction.y()) < 1e-6) return;
     for (const Alive& right : alive(theta, false)) {
@@ -335,8 +395,8 @@ class Search {
   }
 
   /// The strict test; keeps the fixture and its twin. x_right: from the right pins' column 0.
-  void judge(double theta, std::vector<Placed> pins, const std::vector<Placed>& rights, const Vector2d& o,
-             double x_right) {
+  void judge(const Turn& theta, std::vector<Placed> pins, const std::vector<Placed>& rights,
+             const Vector2d& o, double x_right) {
     pins.insert(pins.end(), rights.begin(), rights.end());
     Eigen::Matrix<double, 3, 4> wrenches;
     for (std::size_t k = 0; k < 4; ++k) {
@@ -346,7 +406,8 @@ class Search {
       const auto n = contact(pin.feature, theta, hole, at, 1e-7);
       if (!n || (pin.left ? -n->x() : n->x()) < 1e-6) return;
       const Vector2d lever = hole - at;
-      if (planar::outline_distance_mm(profile_, turned(-theta, lever)) < kit_.pins.radius_mm - 1e-6) return;
+      if (planar::outline_distance_mm(profile_, turned_back(theta, lever)) < kit_.pins.radius_mm - 1e-6)
+        return;
       wrenches.col(static_cast<Eigen::Index>(k)) << -n->x(), -n->y(), -cross(lever, *n) / 10;
     }
     const Eigen::FullPivLU<Eigen::Matrix<double, 3, 4>> lu(wrenches);
@@ -355,7 +416,7 @@ class Search {
     if (multipliers.sum() < 0) multipliers = -multipliers;
     const double margin = multipliers.minCoeff() / multipliers.cwiseAbs().sum();
     if (margin < 1e-8) return;
-    keep(theta, pins, o.x() - x_right, margin);
+    keep(theta.rad, pins, o.x() - x_right, margin);
   }
 
   void keep(double theta, const std::vector<Placed>& pins, double span, double margin) {
