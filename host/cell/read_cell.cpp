@@ -62,6 +62,9 @@ base::Checked<SavedCellPlan> read_cell_plan(const std::filesystem::path& path) {
   for (const std::string& station : stations.keys()) {
     plan.stations.push_back(read_facts(station, stations.at(station)));
   }
+  for (const JsonField& pair : top.at("pairs").list()) {
+    plan.handoffs.push_back({pair.text("giver"), pair.text("receiver")});
+  }
   for (const JsonField& entry : top.at("designs").list()) {
     CellDesign design;
     design.id = entry.text("id");
@@ -94,6 +97,10 @@ base::Expected<void> made_for(const SavedCellPlan& plan, const model::Cell& cell
       return differs("station " + station.name + " took hold of the part in another way then");
     }
   }
+  const auto same = [](const model::Handoff& one, const model::Handoff& other) {
+    return one.giver == other.giver && one.receiver == other.receiver;
+  };
+  if (!std::ranges::equal(plan.handoffs, cell.handoffs, same)) return differs("it has other handoffs");
   if (plan.stations.size() != cell.stations.size())
     return differs("it has other stations than cell " + cell.name);
   return {};

@@ -26,6 +26,7 @@ struct SavedCellPlan {
   std::string part_sha256;
   model::Vector3d up = model::Vector3d::UnitZ();
   std::vector<StationFacts> stations;
+  std::vector<model::Handoff> handoffs;
   std::vector<CellDesign> designs;  ///< smallest max_required_n first
 };
 
@@ -33,8 +34,8 @@ struct SavedCellPlan {
 /// pins where it grips, else three.
 base::Checked<SavedCellPlan> read_cell_plan(const std::filesystem::path& path);
 
-/// Whether the plan was made for this cell: the same stations with the same kits and sides, and the part with
-/// `part_sha256`. Fails with a sentence that names what differs.
+/// Whether the plan was made for this cell: the same handoffs, the same stations with the same kits and
+/// sides, and the part with `part_sha256`. Fails with a sentence that names what differs.
 base::Expected<void> made_for(const SavedCellPlan& plan, const model::Cell& cell,
                               const std::string& part_sha256);
 

@@ -12,13 +12,18 @@ constexpr std::int64_t kForever = std::numeric_limits<std::int64_t>::max();
 ActionState state_of(const jaw_client::Outcome& outcome) {
   using jaw_client::OutcomeKind;
   switch (outcome.kind) {
-    case OutcomeKind::Pending: return StillGoing{};
-    case OutcomeKind::Done: return Finished{};
-    case OutcomeKind::ForceRefused: return Failed{Trouble::ForceLimit, outcome.sentence};
+    case OutcomeKind::Pending:
+      return StillGoing{};
+    case OutcomeKind::Done:
+      return Finished{};
+    case OutcomeKind::ForceRefused:
+      return Failed{Trouble::ForceLimit, outcome.sentence};
     case OutcomeKind::Silent:
-    case OutcomeKind::BusFailed: return Failed{Trouble::Silent, outcome.sentence};
+    case OutcomeKind::BusFailed:
+      return Failed{Trouble::Silent, outcome.sentence};
     case OutcomeKind::Refused:
-    case OutcomeKind::Fault: break;
+    case OutcomeKind::Fault:
+      break;
   }
   return Failed{Trouble::Refused, outcome.sentence};
 }
@@ -47,15 +52,15 @@ Action operate(std::string name, std::uint8_t node, std::function<void(jaw_clien
   return {.name = std::move(name),
           .limit_us = kForever,  // the client limits its operations itself
           .ends_well_at_limit = false,
-          .begin =
-              [begin = std::move(begin)](Stage& stage) -> ActionState {
-                begin(stage.client);
-                return StillGoing{};
-              },
+          .begin = [begin = std::move(begin)](Stage& stage) -> ActionState {
+            begin(stage.client);
+            return StillGoing{};
+          },
           .poll = [node](Stage& stage) { return state_of(stage.client.outcome(node)); }};
 }
 
-Action until(std::string otherwise, std::int64_t limit_us, std::function<bool(const jaw_client::Client&)> condition) {
+Action until(std::string otherwise, std::int64_t limit_us,
+             std::function<bool(const jaw_client::Client&)> condition) {
   return {.name = std::move(otherwise),
           .limit_us = limit_us,
           .ends_well_at_limit = false,

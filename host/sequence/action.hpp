@@ -38,10 +38,10 @@ using ActionState = std::variant<StillGoing, Finished, Failed>;
 
 struct Action {
   std::string name;
-  std::int64_t limit_us = 0;                       ///< over this it ends
-  bool ends_well_at_limit = false;                 ///< true: a pause; false: it fails as silent
-  std::function<ActionState(Stage&)> begin;        ///< may already be the end
-  std::function<ActionState(Stage&)> poll;         ///< asked after every step of the bus
+  std::int64_t limit_us = 0;                 ///< over this it ends
+  bool ends_well_at_limit = false;           ///< true: a pause; false: it fails as silent
+  std::function<ActionState(Stage&)> begin;  ///< may already be the end
+  std::function<ActionState(Stage&)> poll;   ///< asked after every step of the bus
 };
 
 /// Says `request` to the world; done where there is none.
@@ -51,7 +51,8 @@ Action tell(bench::Request request);
 Action operate(std::string name, std::uint8_t node, std::function<void(jaw_client::Client&)> begin);
 
 /// Waits until `condition` holds; fails with `otherwise` after `limit_us`.
-Action until(std::string otherwise, std::int64_t limit_us, std::function<bool(const jaw_client::Client&)> condition);
+Action until(std::string otherwise, std::int64_t limit_us,
+             std::function<bool(const jaw_client::Client&)> condition);
 
 /// Lets time pass.
 Action pause(double seconds);

@@ -1,5 +1,7 @@
 #include "host/sequence/crew.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,7 +12,13 @@ namespace pinjaw::sequence {
 
 namespace {
 
-std::uint16_t tenths_up(double force_n) { return wire::requirement_dn(std::llround(force_n * 1e6)); }
+std::uint16_t tenths_up(double force_n) {
+  return wire::requirement_dn(std::llround(force_n * 1e6));
+}
+
+bool has_room(const Member& member) {
+  return member.layout().peer_count < wire::kMaxPeers;
+}
 
 /// Names each of two stations in the other's layout.
 void make_peers(Member& one, Member& other) {
@@ -41,7 +49,8 @@ Member::Member(const model::Station& station, const model::Design& design, const
 
 double Member::needed_n(const model::Wrench& wrench) {
   if (!solver_) return 0;
-  const planner::SqueezeOutcome outcome = solver_->least_squeeze(planner::turned(wrench, side_), model::FrictionModel::Cone);
+  const planner::SqueezeOutcome outcome =
+      solver_->least_squeeze(planner::turned(wrench, side_), model::FrictionModel::Cone);
   const auto* required = std::get_if<planner::Required>(&outcome);
   return required != nullptr ? std::max(0.0, required->force_n) : std::numeric_limits<double>::infinity();
 }
@@ -54,7 +63,8 @@ model::Vector3d Member::in_part_frame(const model::Vector3d& v_G) const {
   return planner::turned(as_force, side_).head<3>();  // turning by pi undoes itself
 }
 
-base::Expected<Crew> Crew::of(const model::Cell& cell, const cell::CellDesign& design, const planner::Scene& scene) {
+base::Expected<Crew> Crew::of(const model::Cell& cell, const cell::CellDesign& design,
+                              const planner::Scene& scene) {
   Crew crew;
   for (const model::Station& station : cell.stations) {
     const auto chosen = std::ranges::find(design.stations, station.name, &cell::StationDesign::station);
@@ -63,10 +73,21 @@ base::Expected<Crew> Crew::of(const model::Cell& cell, const cell::CellDesign& d
     if (!layout) return base::failure("station " + station.name + ": " + layout.error().message);
     crew.members_.emplace_back(station, chosen->design, *layout);
   }
-  for (const model::Handoff& handoff : cell.handoffs) make_peers(crew.at(handoff.giver), crew.at(handoff.receiver));
+  for (const model::Handoff& handoff : cell.handoffs) {
+    Member& giver = crew.at(handoff.giver);
+    Member& receiver = crew.at(handoff.receiver);
+    if (!has_room(giver) || !has_room(receiver)) {
+      return base::failure(
+          fmt::format("station {}: it hands over to more than {} stations, which no layout can say",
+                      has_room(giver) ? receiver.name() : giver.name(), wire::kMaxPeers));
+    }
+    make_peers(giver, receiver);
+  }
   return crew;
 }
 
-Member& Crew::at(const std::string& station) { return *std::ranges::find(members_, station, &Member::name); }
+Member& Crew::at(const std::string& station) {
+  return *std::ranges::find(members_, station, &Member::name);
+}
 
 }  // namespace pinjaw::sequence

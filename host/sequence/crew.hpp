@@ -28,8 +28,8 @@ class Member {
   [[nodiscard]] wire::Layout& layout() { return layout_; }
   [[nodiscard]] wire::SqueezeForces squeeze() const { return squeeze_; }
 
-  /// Squeeze with which this station alone balances `wrench` (part frame); infinite where none does; 0 for one that
-  /// does not grip.
+  /// Squeeze with which this station alone balances `wrench` (part frame); infinite where none does; 0 for
+  /// one that does not grip.
   [[nodiscard]] double needed_n(const model::Wrench& wrench);
 
   /// A direction of the station's own frame, in the part frame while it holds the part.
@@ -49,7 +49,8 @@ class Member {
 /// The stations of a run, each knowing its peers: every handoff of the cell is named in both layouts.
 class Crew {
  public:
-  static base::Expected<Crew> of(const model::Cell& cell, const cell::CellDesign& design, const planner::Scene& scene);
+  static base::Expected<Crew> of(const model::Cell& cell, const cell::CellDesign& design,
+                                 const planner::Scene& scene);
 
   [[nodiscard]] std::vector<Member>& members() { return members_; }
   [[nodiscard]] const std::vector<Member>& members() const { return members_; }

@@ -29,9 +29,12 @@ model::Wrench inertia(const Carried& carried, double g, const model::Vector3d& a
 
 }  // namespace
 
-model::Wrench weight(const Carried& carried) { return inertia(carried, 1, carried.down); }
+model::Wrench weight(const Carried& carried) {
+  return inertia(carried, 1, carried.down);
+}
 
-std::vector<Load> loads_of(const model::MoveStep& move, const Carried& carried, const model::Vector3d& along) {
+std::vector<Load> loads_of(const model::MoveStep& move, const Carried& carried,
+                           const model::Vector3d& along) {
   const double ramp_s = std::min(kStopSeconds, move.seconds / 2);
   const model::Wrench still = weight(carried);
   return {{"speeding up", still + inertia(carried, move.peak_g, -along), ramp_s},
@@ -39,7 +42,8 @@ std::vector<Load> loads_of(const model::MoveStep& move, const Carried& carried, 
           {"slowing down", still + inertia(carried, move.peak_g, along), ramp_s}};
 }
 
-std::vector<Load> loads_of(const model::RotateStep& rotate, const Carried& carried, const model::Vector3d& axis) {
+std::vector<Load> loads_of(const model::RotateStep& rotate, const Carried& carried,
+                           const model::Vector3d& axis) {
   const double stop_s = std::min(kStopSeconds, rotate.seconds / 5);
   const double swing_s = std::max(0.0, rotate.seconds - 4 * stop_s);
   const auto at_angle = [&](double angle_rad) {

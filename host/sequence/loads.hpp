@@ -21,7 +21,7 @@ struct Load {
 struct Carried {
   double mass_kg = 0;
   model::Vector3d centroid_mm = model::Vector3d::Zero();  ///< part frame
-  model::Vector3d down = -model::Vector3d::UnitZ();  ///< where gravity pulls, unit, in the part frame
+  model::Vector3d down = -model::Vector3d::UnitZ();       ///< where gravity pulls, unit, in the part frame
 };
 
 /// The weight of the part alone.
@@ -30,11 +30,14 @@ model::Wrench weight(const Carried& carried);
 /// A linear move along `along` (part frame): it speeds up with the peak, goes, and slows down.
 std::vector<Load> loads_of(const model::MoveStep& move, const Carried& carried, const model::Vector3d& along);
 
-/// A turn about the part frame's direction `axis`: the peak acceleration at both stops, either way along the part's
-/// z (BB 4.1), and between them gravity as it turns with the station. Ends with gravity turned by the step's angle.
-std::vector<Load> loads_of(const model::RotateStep& rotate, const Carried& carried, const model::Vector3d& axis);
+/// A turn about the part frame's direction `axis`: the peak acceleration at both stops, either way along the
+/// part's z (BB 4.1), and between them gravity as it turns with the station. Ends with gravity turned by the
+/// step's angle.
+std::vector<Load> loads_of(const model::RotateStep& rotate, const Carried& carried,
+                           const model::Vector3d& axis);
 
-/// A jet that wanders over the part: hits drawn with the step's seed, one every 50 ms. Fails where no ray finds the part.
+/// A jet that wanders over the part: hits drawn with the step's seed, one every 50 ms. Fails where no ray
+/// finds the part.
 base::Expected<std::vector<Load>> loads_of(const model::SprayStep& spray, const Carried& carried,
                                            const planner::Scene& scene);
 

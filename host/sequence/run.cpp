@@ -23,7 +23,9 @@ Run::Run(const model::Sequence& sequence, const Crew& crew, std::vector<StepScri
   }
 }
 
-const std::string& Run::playing() const { return scripts_[std::min(step_, scripts_.size() - 1)].name; }
+const std::string& Run::playing() const {
+  return scripts_[std::min(step_, scripts_.size() - 1)].name;
+}
 
 void Run::step(std::int64_t now_us) {
   if (over_) return;
@@ -31,7 +33,8 @@ void Run::step(std::int64_t now_us) {
   if (!started_us_) {
     started_us_ = now_us;
     begin_try();
-    report_.steps.push_back({.step = playing(), .result = "", .from_s = 0, .to_s = 0, .tries = 1, .states = {}});
+    report_.steps.push_back(
+        {.step = playing(), .result = "", .from_s = 0, .to_s = 0, .tries = 1, .states = {}});
   }
   inject_faults();
   if (killed_) {
@@ -60,7 +63,8 @@ void Run::note_states() {
 void Run::inject_faults() {
   for (std::size_t i = 0; i < sequence_.faults.size(); ++i) {
     const model::ScriptedFault& fault = sequence_.faults[i];
-    const bool by_step = fault.at_step && step_ >= static_cast<std::size_t>(*fault.at_step);  // step 0 sets up
+    const bool by_step =
+        fault.at_step && step_ >= static_cast<std::size_t>(*fault.at_step);  // step 0 sets up
     const bool by_time = fault.at_s && time_s() >= *fault.at_s;
     if (injected_[i] || (!by_step && !by_time)) continue;
     injected_[i] = true;
@@ -149,7 +153,9 @@ void Run::give_up(const Failed& failure) {
   over_ = true;
 }
 
-StepReport& Run::current() { return report_.steps.back(); }
+StepReport& Run::current() {
+  return report_.steps.back();
+}
 
 void Run::finish_step(const std::string& result) {
   current().result = result;

@@ -14,22 +14,24 @@ namespace pinjaw::sequence {
 
 /// Where a run takes place. Both must outlive it.
 struct Venue {
-  bus::Bus* bus = nullptr;          ///< not null
+  bus::Bus* bus = nullptr;            ///< not null
   bench::WorldPort* world = nullptr;  ///< nothing: the report says `"plant": null`
   /// Loses a share (0..1) of all frames for so many seconds from now on; empty where the bus cannot.
   std::function<void(double share, double seconds)> lose_frames;
 };
 
-/// Plays a script on the controllers, step by step, and writes down what happened. It has no clock: its caller steps
-/// it, at least every 5 ms of the time it passes in.
+/// Plays a script on the controllers, step by step, and writes down what happened. It has no clock: its
+/// caller steps it, at least every 5 ms of the time it passes in.
 ///
-/// A failed handoff is tried again, three times at most; after any other failure the run ends, aborted, with the part
-/// wherever it is held. A killed host falls silent at once; the run then only watches, for kAftermathS.
+/// A failed handoff is tried again, three times at most; after any other failure the run ends, aborted, with
+/// the part wherever it is held. A killed host falls silent at once; the run then only watches, for
+/// kAftermathS.
 class Run {
  public:
   static constexpr double kAftermathS = 5;
 
-  Run(const model::Sequence& sequence, const Crew& crew, std::vector<StepScript> scripts, Venue venue, std::uint16_t epoch);
+  Run(const model::Sequence& sequence, const Crew& crew, std::vector<StepScript> scripts, Venue venue,
+      std::uint16_t epoch);
 
   void step(std::int64_t now_us);
   [[nodiscard]] bool over() const { return over_; }

@@ -12,7 +12,9 @@ namespace {
 using nlohmann::ordered_json;
 
 /// Virtual and real time are counted in microseconds.
-double seconds(double time_s) { return base::rounded(time_s, 6); }
+double seconds(double time_s) {
+  return base::rounded(time_s, 6);
+}
 
 ordered_json step_json(const StepReport& step) {
   ordered_json states = ordered_json::array();
@@ -22,8 +24,8 @@ ordered_json step_json(const StepReport& step) {
                       {"state", wire::to_string(change.state)},
                       {"fact", wire::to_string(change.fact)}});
   }
-  return {{"step", step.step},   {"result", step.result}, {"from_s", seconds(step.from_s)},
-          {"to_s", seconds(step.to_s)},   {"tries", step.tries},   {"states", states}};
+  return {{"step", step.step},          {"result", step.result}, {"from_s", seconds(step.from_s)},
+          {"to_s", seconds(step.to_s)}, {"tries", step.tries},   {"states", states}};
 }
 
 ordered_json plant_json(const std::optional<bench::Truth>& truth) {

@@ -13,9 +13,9 @@ namespace pinjaw::sequence {
 
 namespace {
 
-constexpr int kHandoffTries = 3;                      // the contract's number
-constexpr std::int64_t kSettle_us = 5'000'000;        // chosen: ten times what a handoff's last states take
-constexpr double kHandAwayS = 0.1;                    // chosen: a hand takes the part away at once
+constexpr int kHandoffTries = 3;                // the contract's number
+constexpr std::int64_t kSettle_us = 5'000'000;  // chosen: ten times what a handoff's last states take
+constexpr double kHandAwayS = 0.1;              // chosen: a hand takes the part away at once
 constexpr double kLevelRad = 1e-4;  // chosen: rounding of a script's degrees, far under a real tilt
 
 /// Writes one script after the other and remembers where the part is then.
@@ -31,10 +31,11 @@ class Writer {
     script.name = "set up";
     for (Member& member : crew_.members()) {
       const std::uint8_t node = member.node();
-      script.actions.push_back(operate("send the layout", node, [node, layout = member.layout()](auto& client) {
-        client.permit(node, true);
-        client.send_layout(node, layout);
-      }));
+      script.actions.push_back(
+          operate("send the layout", node, [node, layout = member.layout()](auto& client) {
+            client.permit(node, true);
+            client.send_layout(node, layout);
+          }));
       script.actions.push_back(arm(member));
     }
     return script;
@@ -56,14 +57,17 @@ class Writer {
     bench::Place place{.on = holder_->node(), .grasps = {}};
     for (Member& member : crew_.members()) {
       if (!member.grips()) continue;
-      place.grasps.push_back({member.node(), member.design().jaw_separation_mm, member.needed_n(weight(carried_))});
+      place.grasps.push_back(
+          {member.node(), member.design().jaw_separation_mm, member.needed_n(weight(carried_))});
     }
     const std::uint8_t node = holder_->node();
-    script_.actions = {tell(bench::Enable{node, true}), tell(place),
-                       operate("close on the part", node, [node](auto& client) { client.close_light(node); })};
+    script_.actions = {
+        tell(bench::Enable{node, true}), tell(place), stay_armed(*holder_),
+        operate("close on the part", node, [node](auto& client) { client.close_light(node); })};
     script_.actions.push_back(squeeze(*holder_));
-    script_.actions.push_back(until(fmt::format("{} does not come to hold the part", step.on), kSettle_us,
-                                    [node](const auto& client) { return client.node(node).in(wire::State::Hold); }));
+    script_.actions.push_back(
+        until(fmt::format("{} does not come to hold the part", step.on), kSettle_us,
+              [node](const auto& client) { return client.node(node).in(wire::State::Hold); }));
     script_.actions.push_back(tell(bench::Enable{node, false}));
     return {};
   }
@@ -72,9 +76,12 @@ class Writer {
     script_.name = "remove from " + step.from;
     if (auto ok = at_level(step.from); !ok) return ok;
     const std::uint8_t node = holder_->node();
-    script_.actions = {tell(bench::Enable{node, true}), tell(bench::Remove{node}),
+    script_.actions = {tell(bench::Enable{node, true}),
+                       tell(bench::Remove{node}),
+                       stay_armed(*holder_),
                        operate("release by hand", node, [node](auto& client) { client.release(node); }),
-                       tell(bench::Enable{node, false}), pause(kHandAwayS)};
+                       tell(bench::Enable{node, false}),
+                       pause(kHandAwayS)};
     holder_ = nullptr;
     return {};
   }
@@ -91,20 +98,22 @@ class Writer {
       return client.node(receiver).in(wire::State::Hold) && client.node(giver).in(wire::State::Ready);
     };
     script_.actions = {
-        tell(bench::Meet{{giver, receiver}}),
+        tell(bench::Meet{{giver, receiver}}), stay_armed(*holder_), stay_armed(taker),
         operate("offer", giver, [giver, receiver](auto& client) { client.offer(giver, receiver); }),
         operate("accept", receiver, [giver, receiver](auto& client) { client.accept(receiver, giver); })};
     script_.actions.push_back(squeeze(taker));
-    script_.actions.push_back(until(fmt::format("{} does not let go", step.from), kSettle_us, script_.reached));
-    script_.undo = {
-        attempt(arm(taker)),  // a silence may have ended the sessions
-        attempt(arm(*holder_)),
-        attempt(operate("abort", receiver, [receiver](auto& client) { client.abort(receiver); })),
-        attempt(operate("abort", giver, [giver](auto& client) { client.abort(giver); })),
-        attempt(until("the giver holds again", kSettle_us, [giver, receiver](const jaw_client::Client& client) {
-          const bool back = client.node(giver).in(wire::State::Hold) && client.node(receiver).in(wire::State::Ready);
-          return back || client.node(receiver).in(wire::State::Hold);
-        }))};
+    script_.actions.push_back(
+        until(fmt::format("{} does not let go", step.from), kSettle_us, script_.reached));
+    script_.undo = {attempt(arm(taker)),  // a silence may have ended the sessions
+                    attempt(arm(*holder_)),
+                    attempt(operate("abort", receiver, [receiver](auto& client) { client.abort(receiver); })),
+                    attempt(operate("abort", giver, [giver](auto& client) { client.abort(giver); })),
+                    attempt(until("the giver holds again", kSettle_us,
+                                  [giver, receiver](const jaw_client::Client& client) {
+                                    const bool back = client.node(giver).in(wire::State::Hold) &&
+                                                      client.node(receiver).in(wire::State::Ready);
+                                    return back || client.node(receiver).in(wire::State::Hold);
+                                  }))};
     holder_ = &taker;
     return {};
   }
@@ -112,14 +121,15 @@ class Writer {
   base::Expected<void> add(const model::MoveStep& step) {
     script_.name = "move " + step.station;
     Member& member = crew_.at(step.station);
-    script_.actions.push_back(
-        tell(bench::Move{member.node(), step.seconds, step.peak_g, {step.along.x(), step.along.y(), step.along.z()}}));
+    script_.actions.push_back(tell(bench::Move{
+        member.node(), step.seconds, step.peak_g, {step.along.x(), step.along.y(), step.along.z()}}));
     if (holder_ != &member) return add_pause(step.seconds);
     return add_loads(loads_of(step, carried_, member.in_part_frame(step.along)));
   }
 
   base::Expected<void> add(const model::RotateStep& step) {
-    script_.name = fmt::format("rotate {} by {:g} deg", step.station, step.angle_rad * 180 / std::numbers::pi);
+    script_.name =
+        fmt::format("rotate {} by {:g} deg", step.station, step.angle_rad * 180 / std::numbers::pi);
     Member& member = crew_.at(step.station);
     script_.actions.push_back(tell(bench::Rotate{member.node(), step.angle_rad, step.seconds, step.peak_g}));
     if (holder_ != &member) return add_pause(step.seconds);
@@ -149,7 +159,20 @@ class Writer {
 
   static Action arm(const Member& member) {
     const std::uint32_t crc = wire::layout_crc_of(member.layout());
-    return operate("arm", member.node(), [node = member.node(), crc](auto& client) { client.arm(node, crc); });
+    return operate("arm", member.node(),
+                   [node = member.node(), crc](auto& client) { client.arm(node, crc); });
+  }
+
+  /// Opens a session anew where a silence has ended it, as an overloaded machine may be silent for long
+  /// enough.
+  static Action stay_armed(const Member& member) {
+    Action action = arm(member);
+    action.begin = [node = member.node(), begin = std::move(action.begin)](Stage& stage) -> ActionState {
+      const jaw_client::NodeView& view = stage.client.node(node);
+      if (view.state && view.state->armed && stage.client.armed(node)) return Finished{};
+      return begin(stage);
+    };
+    return action;
   }
 
   /// A station that does not grip takes part with no force: its seats are what must be stable.
@@ -161,7 +184,8 @@ class Writer {
 
   /// The part is at `station`, the way up that handoffs and hands need.
   base::Expected<void> at_level(const std::string& station) {
-    if (holder_ == nullptr || holder_->name() != station) return base::failure("the part is not at " + station + " then");
+    if (holder_ == nullptr || holder_->name() != station)
+      return base::failure("the part is not at " + station + " then");
     const double tilt_rad = std::acos(std::clamp(carried_.down.dot(-model::Vector3d::UnitZ()), -1.0, 1.0));
     if (tilt_rad > kLevelRad) {
       return base::failure(fmt::format("{} is turned by {:.1f} deg then; rotate it back first", station,

@@ -1,0 +1,123 @@
+#include "tests/scenarios/vcan/programs.hpp"
+
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+#include <thread>
+
+namespace pinjaw::scenario {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr std::chrono::milliseconds kPoll(20);
+
+/// Short, as the path of a socket must be, and nobody else's, also where process numbers repeat (User-Mode
+/// Linux).
+std::string new_folder() {
+  std::string name = "/tmp/pinjaw-scenario-XXXXXX";
+  if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no folder in /tmp");
+  return name;
+}
+
+std::vector<std::string> jaw_command(const std::vector<std::string>& names, const std::string& path) {
+  std::vector<std::string> command = {PINJAW_BIN_DIR "/pinjaw-jaw"};
+  for (const std::string& name : names) command.push_back(config("controllers/" + name + ".yaml"));
+  command.insert(command.end(), {"--bus", "can:vcan0", "--world", path});
+  return command;
+}
+
+}  // namespace
+
+Process::Process(std::vector<std::string> command, const std::string& output) : child_(fork()) {
+  if (child_ != 0) return;
+  if (!output.empty()) {
+    constexpr mode_t kReadable = 0644;
+    const int file = open(output.c_str(), O_WRONLY | O_CREAT | O_TRUNC, kReadable);
+    if (file < 0 || dup2(file, STDOUT_FILENO) < 0) _exit(126);
+  }
+  std::vector<char*> arguments;
+  for (std::string& word : command) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  execvp(arguments.front(), arguments.data());
+  _exit(127);
+}
+
+Process::~Process() {
+  if (child_ <= 0) return;
+  kill(child_, SIGKILL);
+  waitpid(child_, nullptr, 0);
+}
+
+void Process::signal(int number) const {
+  if (child_ > 0) kill(child_, number);
+}
+
+int Process::wait(std::chrono::seconds patience) {
+  const auto give_up = Clock::now() + patience;
+  int status = 0;
+  while (waitpid(child_, &status, WNOHANG) == 0) {
+    if (Clock::now() > give_up) return -1;
+    std::this_thread::sleep_for(kPoll);
+  }
+  child_ = 0;
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+int pinjaw(std::vector<std::string> arguments, const std::string& output) {
+  arguments.insert(arguments.begin(), PINJAW_BIN_DIR "/pinjaw");
+  arguments.insert(arguments.end(), {"--bus", "can:vcan0"});
+  return Process(std::move(arguments), output).wait();
+}
+
+Controllers::Controllers(const std::vector<std::string>& names)
+    : path_(new_folder() + "/world"), program_(jaw_command(names, path_)) {
+  for (int tries = 0; tries < 1000 && !world_; ++tries) {
+    if (auto world = bench::SocketWorld::connect(path_)) world_ = std::move(*world);
+    std::this_thread::sleep_for(kPoll);
+  }
+  if (!world_) throw std::runtime_error("pinjaw-jaw does not serve its world");
+}
+
+Controllers::~Controllers() {
+  program_.signal(SIGTERM);  // so that it removes its socket
+  program_.wait();
+  std::error_code ignored;
+  std::filesystem::remove_all(std::filesystem::path(path_).parent_path(), ignored);
+}
+
+bench::Reply Controllers::ask(const bench::Request& request) {
+  auto reply = world_->ask(request);
+  if (!reply) throw std::runtime_error(reply.error().message);
+  if (const auto* refused = std::get_if<bench::Refused>(&*reply)) throw std::runtime_error(refused->reason);
+  return std::move(*reply);
+}
+
+bool Controllers::comes_true(const std::function<bool(const bench::Truth&)>& condition,
+                             std::chrono::seconds patience) {
+  const auto give_up = Clock::now() + patience;
+  while (!condition(truth())) {
+    if (Clock::now() > give_up) return false;
+    std::this_thread::sleep_for(kPoll);
+  }
+  return true;
+}
+
+std::string config(const std::string& name) {
+  return PINJAW_SOURCE_DIR "/configs/" + name;
+}
+
+std::string content(const std::string& path) {
+  std::stringstream text;
+  text << std::ifstream(path).rdbuf();
+  return text.str();
+}
+
+}  // namespace pinjaw::scenario

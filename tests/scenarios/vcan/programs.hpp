@@ -1,0 +1,61 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "protocol/bench/unix_socket.hpp"
+
+/// pinjaw, pinjaw-jaw and candump as processes on vcan0. Times are patience only, never asserted.
+namespace pinjaw::scenario {
+
+/// A program of its own, killed where it outlives this.
+class Process {
+ public:
+  /// `output`: file for stdout; empty: this one's.
+  explicit Process(std::vector<std::string> command, const std::string& output = {});
+  Process(const Process&) = delete;
+  Process& operator=(const Process&) = delete;
+  ~Process();
+
+  void signal(int number) const;
+  /// Exit code, 128 + n where signal n ended it, -1 where it does not end within `patience`.
+  int wait(std::chrono::seconds patience = std::chrono::seconds(120));
+
+ private:
+  pid_t child_;
+};
+
+/// Runs `pinjaw ARGUMENTS --bus can:vcan0` to its end and gives its exit code.
+int pinjaw(std::vector<std::string> arguments, const std::string& output = {});
+
+/// pinjaw-jaw with controllers of configs/controllers, and its world.
+class Controllers {
+ public:
+  explicit Controllers(const std::vector<std::string>& names);
+  Controllers(const Controllers&) = delete;
+  Controllers& operator=(const Controllers&) = delete;
+  ~Controllers();
+
+  [[nodiscard]] const std::string& world_path() const { return path_; }
+  /// Throws where the world does not do it.
+  bench::Reply ask(const bench::Request& request);
+  bench::Truth truth() { return std::get<bench::Truth>(ask(bench::AskTruth{})); }
+  /// Whether `condition` comes to hold of the truth.
+  bool comes_true(const std::function<bool(const bench::Truth&)>& condition,
+                  std::chrono::seconds patience = std::chrono::seconds(30));
+
+ private:
+  std::string path_;
+  Process program_;
+  std::unique_ptr<bench::SocketWorld> world_;
+};
+
+std::string config(const std::string& name);
+std::string content(const std::string& path);
+
+}  // namespace pinjaw::scenario
