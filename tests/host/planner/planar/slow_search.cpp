@@ -260,7 +260,7 @@ class Search {
   }
 
   template <typename Difference>
-  std::optional<Turn> halved(double lo, double hi, const Difference& difference) const {
+  [[nodiscard]] std::optional<Turn> halved(double lo, double hi, const Difference& difference) const {
     const auto at_lo = difference(Turn(lo));
     if (!at_lo) return std::nullopt;
     for (int i = 0; i < 60; ++i) {
