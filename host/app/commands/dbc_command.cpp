@@ -19,7 +19,7 @@ void run_dbc(Context& context, const Options& options) {
   std::vector<std::uint8_t> nodes;
   for (const int node : options.nodes) nodes.push_back(static_cast<std::uint8_t>(node));
   std::ranges::sort(nodes);
-  nodes.erase(std::ranges::unique(nodes).begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
   if (nodes.empty()) nodes = describe::all_nodes();
   context.write_result(options.output, context.json ? describe::to_json() : describe::to_dbc(nodes));
 }
