@@ -45,12 +45,16 @@ std::string summary_of(const cell::CellPlan& plan) {
 }
 
 void run_cell(Context& context, const Options& options) {
+  if (options.planning.top == "all") {
+    return context.fail(ExitCode::Usage,
+                        "--top: a cell may have billions of combinations; give a number, not all");
+  }
   if (!context.can_write(options.output, options.cell)) return;
   const auto cell = config::read_cell(options.cell);
   if (!cell) return context.fail(cell.error(), "nothing was planned");
   cell::CellOptions cell_options;
   cell_options.plan = options.planning.plan;
-  cell_options.top = options.planning.top == "all" ? 0 : std::stoul(options.planning.top);
+  cell_options.top = std::stoul(options.planning.top);
   const auto plan = cell::make_cell_plan(*cell, cell_options, context.progress_sink());
   if (!plan) return context.fail(ExitCode::BadFile, options.cell + ": " + plan.error().message);
   if (!context.deliver(options.output, cell::to_json(*plan), summary_of(*plan))) return;

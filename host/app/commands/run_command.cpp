@@ -54,11 +54,11 @@ std::optional<std::vector<cell::CellDesign>> saved_designs(Context& context, con
   return std::move(plan->designs);
 }
 
-/// As many designs of the cell as are needed to find `wanted` among them.
+/// The cell's best design, or as many as `pinjaw cell` lists, for `wanted` to be among them.
 std::optional<std::vector<cell::CellDesign>> planned_designs(Context& context, const model::Cell& cell,
                                                              const std::string& wanted) {
   cell::CellOptions options;
-  options.top = wanted == "best" ? 1 : 0;
+  if (wanted == "best") options.top = 1;
   auto plan = cell::make_cell_plan(cell, options, context.progress_sink());
   if (!plan) {
     context.fail(ExitCode::BadFile, plan.error().message);
@@ -78,7 +78,9 @@ std::optional<cell::CellDesign> choose_design(Context& context, const Options& o
                           : std::ranges::find(*designs, sequence.design, &cell::CellDesign::id);
   if (chosen == designs->end()) {
     context.fail(ExitCode::No, designs->empty() ? "no combination of designs fits all handoffs of the cell"
-                                                : "the cell has no design " + sequence.design);
+                                                : "no design " + sequence.design + " among the best " +
+                                                      std::to_string(designs->size()) +
+                                                      "; name the cell plan that lists it with --plan");
     return std::nullopt;
   }
   return *chosen;

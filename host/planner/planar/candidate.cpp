@@ -7,7 +7,7 @@
 namespace pinjaw::planner::planar {
 namespace {
 
-constexpr double kLeastPush = 1e-6;        // |n_x| under this is rounding of 0 (research: known cases' value)
+constexpr double kLeastPush = 1e-6;        // |n_x| under this is rounding of 0, as in the known cases
 constexpr double kLeastMultiplier = 1e-9;  // chosen: above rounding, far below any real margin
 constexpr double kRoughMultiplier =
     -0.02;  // chosen: seeds are near enough to tell this much before polishing

@@ -20,8 +20,8 @@ inline constexpr double kThetaGap_rad = 2e-7;  // chosen: above the rounding of 
 inline constexpr double kNear_mm = 1e-4;  // chosen: five times the pieces' own error
 
 /// Zeros of y_p(theta) - y_q(theta) - row * spacing, all rows at once: on one overlap of two pieces the
-/// difference is a cubic, so each of its monotone parts meets each row's level at most once (research: level
-/// sets of one function).
+/// difference is a cubic, so each of its monotone parts meets each row's level at most once (level sets of
+/// one function; DESIGN 6).
 ///
 /// Calls try_at(theta_rad, y_mm of p's part origin, row) at least once near every crossing of the true
 /// curves, also where they nearly touch (once on either side) and where they meet at an end.

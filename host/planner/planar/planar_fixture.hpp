@@ -19,7 +19,7 @@ struct PlanarPin {
   geometry::Vector2d n_P = geometry::Vector2d::Zero();  ///< unit, from the pin into the part, part frame
 };
 
-/// Four pins, a part pose and a jaw separation in strict planar form closure (WC; research: planar fixtures).
+/// Four pins, a part pose and a jaw separation in strict planar form closure (WC; DESIGN 3, phase 2).
 struct PlanarFixture {
   model::Split split = model::Split::TwoTwo;
   double theta_rad = 0;           ///< part orientation in the gripper frame, [0, 2 pi)

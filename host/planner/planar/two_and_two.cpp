@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr std::size_t kBins = 512;           // chosen: slices of some 0.006 rad
-constexpr double kLeastOverlap_rad = 1e-10;  // research: a gap between normals of exactly pi never closes
+constexpr double kLeastOverlap_rad = 1e-10;  // a gap between normals of exactly pi never closes
 
 /// A left pair seen from the right jaw, the gripper turned by 180 degrees: y of pin A is mirrored.
 Piece turned(const Piece& piece) {
