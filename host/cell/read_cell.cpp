@@ -7,6 +7,7 @@
 
 #include "host/base/files.hpp"
 #include "host/base/json_fields.hpp"
+#include "host/base/json_places.hpp"
 #include "host/planner/plan/json_values.hpp"
 
 namespace pinjaw::cell {
@@ -74,7 +75,7 @@ base::Checked<SavedCellPlan> read_cell_plan(const std::filesystem::path& path) {
     }
     plan.designs.push_back(std::move(design));
   }
-  if (!mistakes.empty()) return tl::unexpected(mistakes);
+  if (!mistakes.empty()) return tl::unexpected(base::placed_in_json(mistakes, *bytes));
   return plan;
 }
 
