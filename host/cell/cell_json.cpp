@@ -23,7 +23,9 @@ ordered_json part_json(const planner::PartFacts& part) {
 /// The funnel, and what the station's designs were made for.
 ordered_json station_json(const StationPlan& station) {
   ordered_json entry = funnel_json(station.plan.funnel);
-  entry["kit"] = {{"name", station.plan.kit.name}, {"sha256", station.plan.kit.sha256}};
+  entry["task"] = station.plan.task;
+  entry["kit"] = planner::kit_json(station.plan.kit);
+  entry["friction"] = planner::friction_json({station.plan.friction, station.plan.friction_model});
   entry["side"] = station.plan.side == model::Side::Below ? "below" : "above";
   entry["grips"] = station.grips;
   return entry;

@@ -8,7 +8,6 @@
 #include "host/base/files.hpp"
 #include "host/base/json_fields.hpp"
 #include "host/base/json_places.hpp"
-#include "host/planner/plan/json_values.hpp"
 
 namespace pinjaw::cell {
 namespace {
@@ -22,7 +21,9 @@ constexpr std::size_t kPalletPins = 3;
 StationFacts read_facts(const std::string& station, const JsonField& field) {
   StationFacts facts;
   facts.station = station;
-  facts.kit_sha256 = field.at("kit").text("sha256");
+  facts.task = field.text("task");
+  facts.kit = planner::read_kit_json(field.at("kit"));
+  facts.friction = planner::read_friction(field.at("friction"));
   facts.side = field.at("side").one_of({"below", "above"}) == 0 ? model::Side::Below : model::Side::Above;
   facts.grips = field.at("grips").truth();
   return facts;
@@ -57,6 +58,7 @@ base::Checked<SavedCellPlan> read_cell_plan(const std::filesystem::path& path) {
   SavedCellPlan plan;
   plan.file = name;
   plan.cell = top.text("cell");
+  plan.part_file = top.at("part").text("file");
   plan.part_sha256 = top.at("part").text("sha256");
   plan.up = planner::read_vector3(top.at("part").at("up"));
   const JsonField stations = top.at("stations");
@@ -90,7 +92,7 @@ base::Expected<void> made_for(const SavedCellPlan& plan, const model::Cell& cell
   for (const model::Station& station : cell.stations) {
     const auto facts = std::ranges::find(plan.stations, station.name, &StationFacts::station);
     if (facts == plan.stations.end()) return differs("it has no station " + station.name);
-    if (facts->kit_sha256 != station.task.kit.sha256) {
+    if (facts->kit.sha256 != station.task.kit.sha256) {
       return differs(fmt::format("station {} has another kit now than {} was then", station.name,
                                  station.task.kit.name));
     }

@@ -8,13 +8,16 @@
 #include "host/base/expected.hpp"
 #include "host/cell/cell_plan.hpp"
 #include "host/model/cell.hpp"
+#include "host/planner/plan/json_values.hpp"
 
 namespace pinjaw::cell {
 
 /// What a written cell plan says of one station besides its designs.
 struct StationFacts {
   std::string station;
-  std::string kit_sha256;
+  std::string task;
+  model::Kit kit;
+  planner::Friction friction;
   model::Side side = model::Side::Below;
   bool grips = true;
 };
@@ -23,6 +26,7 @@ struct StationFacts {
 struct SavedCellPlan {
   std::string file;
   std::string cell;
+  std::filesystem::path part_file;
   std::string part_sha256;
   model::Vector3d up = model::Vector3d::UnitZ();
   std::vector<StationFacts> stations;

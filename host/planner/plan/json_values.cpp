@@ -77,6 +77,11 @@ ordered_json pose_json(const geometry::Pose2& pose) {
   return {{"x_mm", pose.t_mm.x()}, {"y_mm", pose.t_mm.y()}, {"theta_deg", pose.theta_rad / kDegree}};
 }
 
+ordered_json friction_json(const Friction& friction) {
+  return {{"mu", friction.mu},
+          {"model", friction.model == model::FrictionModel::Pyramid ? "pyramid" : "cone"}};
+}
+
 ordered_json kit_json(const model::Kit& kit) {
   ordered_json jaws = {{"separation_mm", pair_json(kit.jaws.separation_mm.lo, kit.jaws.separation_mm.hi)},
                        {"plate_gap_mm", kit.jaws.plate_gap_mm},
@@ -140,6 +145,11 @@ model::Vector3d read_vector3(const JsonField& field) {
 
 geometry::Pose2 read_pose(const JsonField& field) {
   return {field.number("theta_deg") * kDegree, {field.number("x_mm"), field.number("y_mm")}};
+}
+
+Friction read_friction(const JsonField& field) {
+  const bool pyramid = field.at("model").one_of({"pyramid", "cone"}) == 0;
+  return {field.number("mu"), pyramid ? model::FrictionModel::Pyramid : model::FrictionModel::Cone};
 }
 
 model::Kit read_kit_json(const JsonField& field) {

@@ -87,9 +87,7 @@ std::string to_json(const Plan& plan) {
   if (!plan.obstacles.empty()) document["obstacles"] = obstacles_json(plan.obstacles);
   if (plan.attached)
     document["attached"] = {{"file", plan.attached->file.string()}, {"base", plan.attached->base}};
-  document["friction"] = {
-      {"mu", plan.friction},
-      {"model", plan.friction_model == model::FrictionModel::Pyramid ? "pyramid" : "cone"}};
+  document["friction"] = friction_json({plan.friction, plan.friction_model});
   document["random"] = plan.random_algorithm;
   document["disturbances"] = disturbances_json(plan);
   document["funnel"] = funnel_json(plan.funnel);
@@ -124,10 +122,9 @@ base::Checked<Plan> read_plan(const std::filesystem::path& path) {
   if (top.has("attached")) {
     plan.attached = model::Attached{top.at("attached").text("file"), top.at("attached").text("base")};
   }
-  plan.friction = top.at("friction").number("mu");
-  plan.friction_model = top.at("friction").at("model").one_of({"pyramid", "cone"}) == 0
-                            ? model::FrictionModel::Pyramid
-                            : model::FrictionModel::Cone;
+  const Friction friction = read_friction(top.at("friction"));
+  plan.friction = friction.mu;
+  plan.friction_model = friction.model;
   plan.random_algorithm = top.text("random");
   plan.disturbances = read_disturbances(top.at("disturbances"));
   plan.funnel = read_funnel(top.at("funnel"));
