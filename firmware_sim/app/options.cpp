@@ -15,7 +15,7 @@ constexpr const char* kAbout =
 constexpr const char* kExamples = R"(
 Examples:
   pinjaw-jaw configs/controllers/pedestal.yaml --bus can:vcan0
-  pinjaw-jaw configs/controllers/*.yaml --bus can:vcan0 --world /tmp/world --seed 7
+  pinjaw-jaw configs/controllers/*.yaml --bus can:vcan0 --world world.sock --seed 7
   pinjaw-jaw arm.yaml pedestal.yaml --bus can:vcan0 --fault 2:leak=0.05 --fault 1:supply_lost@20
 
 A machine without a CAN interface gets a virtual one by: ip link add vcan0 type vcan && ip link set vcan0 up

@@ -14,13 +14,13 @@ std::variant<Options, Ended> read(std::vector<const char*> arguments) {
 }
 
 TEST(Options, reads_everything) {
-  const auto asked = read({"a.yaml", "b.yaml", "--bus", "can:vcan0", "--world", "/tmp/w", "--seed", "7",
+  const auto asked = read({"a.yaml", "b.yaml", "--bus", "can:vcan0", "--world", "w.sock", "--seed", "7",
                            "--fault", "2:leak=0.05", "--fault", "1:supply_lost@20", "--events"});
   ASSERT_TRUE(std::holds_alternative<Options>(asked));
   const auto& options = std::get<Options>(asked);
   EXPECT_EQ(options.controllers.size(), 2U);
   EXPECT_EQ(options.interface, "vcan0");
-  EXPECT_EQ(options.world, "/tmp/w");
+  EXPECT_EQ(options.world, "w.sock");
   EXPECT_EQ(options.seed, 7U);
   ASSERT_EQ(options.faults.size(), 2U);
   EXPECT_EQ(options.faults[0].node, 2);

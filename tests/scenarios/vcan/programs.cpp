@@ -22,8 +22,8 @@ constexpr std::chrono::milliseconds kPoll(20);
 /// Short, as the path of a socket must be, and nobody else's, also where process numbers repeat (User-Mode
 /// Linux).
 std::string new_folder() {
-  std::string name = "/tmp/pinjaw-scenario-XXXXXX";
-  if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no folder in /tmp");
+  std::string name = (std::filesystem::temp_directory_path() / "pinjaw-scenario-XXXXXX").string();
+  if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no folder for temporary files");
   return name;
 }
 
