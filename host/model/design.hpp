@@ -19,9 +19,9 @@ struct PinDesign {
   Hole hole;
   double length_mm = 0;
   double top_z_mm = 0;
-  Interval contact_z_mm;              ///< one point where lo == hi
+  Interval contact_z_mm;  ///< one point where lo == hi
   Vector2d contact_mm = Vector2d::Zero();
-  Vector2d normal = Vector2d::Zero(); ///< unit, from the pin into the part
+  Vector2d normal = Vector2d::Zero();  ///< unit, from the pin into the part
   double foot_margin_mm = 0;
   int feature = 0;
 };
@@ -30,8 +30,8 @@ struct Squeeze {
   double required_n = 0;
   double usable_n = 0;
   double limit_n = 0;
-  double margin_n = 0;       ///< usable_n - required_n
-  std::string critical;      ///< name of the disturbance that needs required_n
+  double margin_n = 0;   ///< usable_n - required_n
+  std::string critical;  ///< name of the disturbance that needs required_n
 };
 
 /// Another column shift of the same design that also loads.
@@ -47,9 +47,9 @@ struct Design {
   Split split = Split::TwoTwo;
   double jaw_separation_mm = 0;
   double jaw_open_mm = 0;
-  double closure_margin = 0;      ///< least form-closure multiplier, their sum being 1
-  geometry::Pose2 part_pose;      ///< X_GP of the part turned by the task's side
-  std::vector<PinDesign> pins;    ///< sorted by hole
+  double closure_margin = 0;    ///< least form-closure multiplier, their sum being 1
+  geometry::Pose2 part_pose;    ///< X_GP of the part turned by the task's side
+  std::vector<PinDesign> pins;  ///< sorted by hole
   Squeeze squeeze;
   std::vector<Alternative> alternatives;
 };

@@ -17,9 +17,9 @@ enum class Bulge {
 /// `curve` is a segment directed so that its free side is on the right, or an arc (always counter-clockwise)
 /// whose free side `bulge` tells; `bulge` of a segment is Convex.
 struct Feature {
-  int id = 0;             ///< position in the list of features
-  int loop = 0;           ///< loop of a profile; on a CAD part 0
-  int edge = 0;           ///< edge of that loop; on a CAD part the number of the source edge or face
+  int id = 0;    ///< position in the list of features
+  int loop = 0;  ///< loop of a profile; on a CAD part 0
+  int edge = 0;  ///< edge of that loop; on a CAD part the number of the source edge or face
   geometry::Curve curve;
   Bulge bulge = Bulge::Convex;
   bool approximate = false;  ///< fitted (B-spline, mesh) rather than exact

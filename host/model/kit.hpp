@@ -39,8 +39,8 @@ struct PinStock {
 
 struct Jaws {
   Interval separation_mm;
-  double plate_gap_mm = 0;                ///< plate top to the part's lowest point
-  std::optional<double> opening_mm;       ///< travel of each jaw when it opens; nothing: full travel
+  double plate_gap_mm = 0;           ///< plate top to the part's lowest point
+  std::optional<double> opening_mm;  ///< travel of each jaw when it opens; nothing: full travel
   double plate_thickness_mm = 10;
 };
 

@@ -10,8 +10,12 @@
 
 namespace pinjaw::model {
 
-struct PlaceStep { std::string on; };
-struct RemoveStep { std::string from; };
+struct PlaceStep {
+  std::string on;
+};
+struct RemoveStep {
+  std::string from;
+};
 struct HandoffStep {
   std::string from;
   std::string to;
@@ -35,7 +39,9 @@ struct SprayStep {
   double force_n = 0;
   std::uint64_t seed = 1;
 };
-struct WaitStep { double seconds = 0; };
+struct WaitStep {
+  double seconds = 0;
+};
 
 using Step = std::variant<PlaceStep, RemoveStep, HandoffStep, MoveStep, RotateStep, SprayStep, WaitStep>;
 

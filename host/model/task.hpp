@@ -8,7 +8,6 @@
 #include "host/model/disturbance.hpp"
 #include "host/model/kit.hpp"
 #include "host/model/profile.hpp"
-#include "host/model/profile.hpp"
 
 namespace pinjaw::model {
 

@@ -66,17 +66,22 @@ std::string feature_paths(const model::Feature& feature) {
 
 std::string feature_label(const model::Feature& feature) {
   const double middle_mm = geometry::length_mm(feature.curve) / 2;
-  const Vector2d p = geometry::point_at(feature.curve, middle_mm) - 1.5 * model::outward_normal_at(feature, middle_mm);
+  const Vector2d p =
+      geometry::point_at(feature.curve, middle_mm) - 1.5 * model::outward_normal_at(feature, middle_mm);
   return fmt::format("<text x=\"{:.3f}\" y=\"{:.3f}\">{}</text>\n", p.x(), -p.y() + 0.55, feature.id);
 }
 
 std::string escaped(const std::string& text) {
   std::string result;
   for (const char c : text) {
-    if (c == '&') result += "&amp;";
-    else if (c == '<') result += "&lt;";
-    else if (c == '>') result += "&gt;";
-    else result += c;
+    if (c == '&')
+      result += "&amp;";
+    else if (c == '<')
+      result += "&lt;";
+    else if (c == '>')
+      result += "&gt;";
+    else
+      result += c;
   }
   return result;
 }
@@ -93,8 +98,10 @@ std::string features_svg(const FeaturesDrawing& drawing) {
   const double foot_y = -box.y_lo + kMarginMm + 4;
 
   std::string svg = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.2f}mm\" height=\"{1:.2f}mm\" viewBox=\"{2:.3f} {3:.3f} {0:.3f} "
-      "{1:.3f}\">\n<title>{4}</title>\n<rect x=\"{2:.3f}\" y=\"{3:.3f}\" width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n",
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.2f}mm\" height=\"{1:.2f}mm\" viewBox=\"{2:.3f} "
+      "{3:.3f} {0:.3f} "
+      "{1:.3f}\">\n<title>{4}</title>\n<rect x=\"{2:.3f}\" y=\"{3:.3f}\" width=\"100%\" height=\"100%\" "
+      "fill=\"#fff\"/>\n",
       width, height, box.x_lo - kMarginMm, -box.y_hi - kMarginMm, escaped(drawing.title));
   svg += "<g transform=\"scale(1 -1)\" fill=\"none\">\n";
   for (const geometry::Curve& curve : drawing.seen_from_gripper) {
@@ -104,8 +111,10 @@ std::string features_svg(const FeaturesDrawing& drawing) {
   svg += "</g>\n<g font-family=\"sans-serif\" font-size=\"1.6\" text-anchor=\"middle\" fill=\"#333\">\n";
   for (const model::Feature& feature : drawing.features) svg += feature_label(feature);
   svg += fmt::format(
-      "</g>\n<g font-family=\"sans-serif\" font-size=\"2.6\" fill=\"#000\" transform=\"translate({:.3f} {:.3f})\">\n"
-      "<path d=\"M0 0 h50 M0 -1.5 v3 M50 -1.5 v3\" stroke=\"#000\" stroke-width=\"0.3\"/><text x=\"52\" y=\"1\">50 mm</text>\n"
+      "</g>\n<g font-family=\"sans-serif\" font-size=\"2.6\" fill=\"#000\" transform=\"translate({:.3f} "
+      "{:.3f})\">\n"
+      "<path d=\"M0 0 h50 M0 -1.5 v3 M50 -1.5 v3\" stroke=\"#000\" stroke-width=\"0.3\"/><text x=\"52\" "
+      "y=\"1\">50 mm</text>\n"
       "<circle cx=\"72\" cy=\"0\" r=\"{:.4f}\" fill=\"none\" stroke=\"#000\" stroke-width=\"0.3\"/>\n"
       "<text x=\"0\" y=\"6.5\">{}: {} features; blue: a closed pin has room</text>\n</g>\n</svg>\n",
       box.x_lo, foot_y, drawing.pin_radius_mm, escaped(drawing.title), drawing.features.size());

@@ -15,8 +15,8 @@ struct FeaturesDrawing {
   double pin_radius_mm = 0;
 };
 
-/// An SVG at 1:1 mm: the outline thin and grey; each feature bold where a closed pin has room, dashed where not, with its
-/// number; a scale bar. A pin is drawn for size.
+/// An SVG at 1:1 mm: the outline thin and grey; each feature bold where a closed pin has room, dashed where
+/// not, with its number; a scale bar. A pin is drawn for size.
 std::string features_svg(const FeaturesDrawing& drawing);
 
 }  // namespace pinjaw::report

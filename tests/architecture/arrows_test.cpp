@@ -119,7 +119,8 @@ TEST(Architecture, every_include_follows_an_arrow) {
   for (const Include& include : includes(rules)) {
     if (include.system) continue;
     const std::string target = folder_of(include.what, rules);
-    ASSERT_NE(target, "") << include.file << " includes " << include.what << ", which is not named from the root";
+    ASSERT_NE(target, "") << include.file << " includes " << include.what
+                          << ", which is not named from the root";
     ++checked;
     if (target == include.folder) continue;
     EXPECT_TRUE(is_allowed(rules.at(include.folder).may_include, target))
@@ -129,7 +130,7 @@ TEST(Architecture, every_include_follows_an_arrow) {
 }
 
 TEST(Architecture, portable_code_uses_only_the_listed_standard_headers) {
-  static const std::set<std::string> kAllowed = {"array", "bit",         "cstddef", "cstdint", "limits",
+  static const std::set<std::string> kAllowed = {"array",    "bit",  "cstddef",     "cstdint", "limits",
                                                  "optional", "span", "type_traits", "utility", "algorithm"};
   const auto rules = arrows();
   int checked = 0;
@@ -160,9 +161,8 @@ TEST(Architecture, portable_code_has_no_heap_virtual_floating_point_or_static_mu
 
 TEST(Architecture, third_party_types_stay_in_the_folder_named_for_them) {
   const std::vector<std::pair<std::string, std::set<std::string>>> homes = {
-      {"linux/can", {"protocol/socketcan"}},  {"yaml-cpp", {"host/base"}},
-      {"ccd/", {"host/geometry"}},            {"nlopt", {"host/planner/force"}},
-      {"STEPControl", {"host/part"}},         {"cairo", {"host/report"}},
+      {"linux/can", {"protocol/socketcan"}},     {"yaml-cpp", {"host/base"}},    {"ccd/", {"host/geometry"}},
+      {"nlopt", {"host/planner/force"}},         {"STEPControl", {"host/part"}}, {"cairo", {"host/report"}},
       {"CLI/", {"host/app", "firmware_sim/app"}}};
   const auto rules = arrows();
   for (const Include& include : includes(rules)) {

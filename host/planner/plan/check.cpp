@@ -160,7 +160,8 @@ PlanarFixture fixture_of(const Plan& plan, const model::Design& design) {
     model::Hole hole = pin.hole;
     hole.column -= column[static_cast<std::size_t>(hole.jaw)];
     hole.row -= row;
-    fixture.pins[i] = {hole, pin.feature, 0, pin.foot_margin_mm, foot_in_part_mm(design, pin), normal_in_part(design, pin)};
+    fixture.pins[i] = {
+        hole, pin.feature, 0, pin.foot_margin_mm, foot_in_part_mm(design, pin), normal_in_part(design, pin)};
   }
   return fixture;
 }
