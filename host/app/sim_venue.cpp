@@ -66,7 +66,7 @@ class SimVenue final : public Venue {
     for (std::size_t i = 0; i < cell.stations.size(); ++i) ends.push_back(wire_.open());
     return ends;
   }
-  std::vector<world::Member> members(const model::Cell& cell) const {
+  [[nodiscard]] std::vector<world::Member> members(const model::Cell& cell) const {
     std::vector<world::Member> members;
     for (std::size_t i = 0; i < cell.stations.size(); ++i) {
       members.push_back({figures_of(cell.stations[i]), ends_[i].get()});

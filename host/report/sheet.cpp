@@ -90,7 +90,7 @@ class SheetLayout {
   void choose_paper() {
     struct Choice {
       Paper paper;
-      bool beside;
+      bool beside = false;
     };
     const Vector2d under_mm(std::max(kLeastWidthMm, plates_.width_mm()),
                             kHeaderMm + plates_.height_mm() + kBarAndNotesMm + kCellMm + table_mm());

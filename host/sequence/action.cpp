@@ -83,7 +83,7 @@ Action pause(double seconds) {
 Action attempt(Action action) {
   const auto forgiving = [](std::function<ActionState(Stage&)> inner) {
     return [inner = std::move(inner)](Stage& stage) -> ActionState {
-      const ActionState state = inner(stage);
+      ActionState state = inner(stage);
       if (std::holds_alternative<Failed>(state)) return Finished{};
       return state;
     };
