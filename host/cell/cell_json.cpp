@@ -9,20 +9,13 @@ namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json funnel_json(const planner::Funnel& funnel) {
-  return {
-      {"features", funnel.features}, {"planar", funnel.planar},           {"heights", funnel.heights},
-      {"loadable", funnel.loadable}, {"not_wedging", funnel.not_wedging}, {"resistable", funnel.resistable},
-      {"strong", funnel.strong}};
-}
-
 ordered_json part_json(const planner::PartFacts& part) {
   return {{"file", part.file}, {"sha256", part.sha256}, {"up", planner::vector_json(part.up)}};
 }
 
 /// The funnel, and what the station's designs were made for.
 ordered_json station_json(const StationPlan& station) {
-  ordered_json entry = funnel_json(station.plan.funnel);
+  ordered_json entry = planner::funnel_json(station.plan.funnel);
   entry["task"] = station.plan.task;
   entry["kit"] = planner::kit_json(station.plan.kit);
   entry["friction"] = planner::friction_json({station.plan.friction, station.plan.friction_model});

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "host/base/files.hpp"
+#include "host/base/json_document.hpp"
 #include "host/base/json_fields.hpp"
 #include "host/base/json_places.hpp"
 
@@ -44,19 +44,13 @@ StationDesign read_station(const StationFacts& facts, const JsonField& field) {
 }  // namespace
 
 base::Checked<SavedCellPlan> read_cell_plan(const std::filesystem::path& path) {
-  const std::string name = path.string();
-  const auto bytes = base::read_file(path);
-  if (!bytes) return tl::unexpected(base::Diagnostics({{name, 0, 0}, "", bytes.error().message}));
-  const auto document = base::parse_json(*bytes, name);
+  const auto document = base::read_json_document(path, kFormat);
   if (!document) return tl::unexpected(document.error());
 
   base::Diagnostics mistakes;
-  const JsonField top(&*document, "", &name, &mistakes);
-  if (top.text("format") != kFormat) {
-    return tl::unexpected(base::Diagnostics({{name, 0, 0}, "format", std::string("expected ") + kFormat}));
-  }
+  const JsonField top(&document->value, "", &document->name, &mistakes);
   SavedCellPlan plan;
-  plan.file = name;
+  plan.file = document->name;
   plan.cell = top.text("cell");
   plan.part_file = top.at("part").text("file");
   plan.part_sha256 = top.at("part").text("sha256");
@@ -77,7 +71,7 @@ base::Checked<SavedCellPlan> read_cell_plan(const std::filesystem::path& path) {
     }
     plan.designs.push_back(std::move(design));
   }
-  if (!mistakes.empty()) return tl::unexpected(base::placed_in_json(mistakes, *bytes));
+  if (!mistakes.empty()) return tl::unexpected(base::placed_in_json(mistakes, document->text));
   return plan;
 }
 

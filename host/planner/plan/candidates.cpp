@@ -1,6 +1,5 @@
 #include "host/planner/plan/candidates.hpp"
 
-#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 
 #include <atomic>

@@ -77,6 +77,13 @@ ordered_json pose_json(const geometry::Pose2& pose) {
   return {{"x_mm", pose.t_mm.x()}, {"y_mm", pose.t_mm.y()}, {"theta_deg", pose.theta_rad / kDegree}};
 }
 
+ordered_json funnel_json(const Funnel& funnel) {
+  return {
+      {"features", funnel.features}, {"planar", funnel.planar},           {"heights", funnel.heights},
+      {"loadable", funnel.loadable}, {"not_wedging", funnel.not_wedging}, {"resistable", funnel.resistable},
+      {"strong", funnel.strong}};
+}
+
 ordered_json friction_json(const Friction& friction) {
   return {{"mu", friction.mu},
           {"model", friction.model == model::FrictionModel::Pyramid ? "pyramid" : "cone"}};

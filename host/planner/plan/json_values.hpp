@@ -7,6 +7,7 @@
 #include "host/model/disturbance.hpp"
 #include "host/model/kit.hpp"
 #include "host/model/task.hpp"
+#include "host/planner/plan/plan.hpp"
 
 /// Model values as JSON, and back: what plans and cell plans share. Units stand in every key.
 namespace pinjaw::planner {
@@ -18,6 +19,7 @@ struct Friction {
   double mu = 0;
   model::FrictionModel model = model::FrictionModel::Pyramid;
 };
+nlohmann::ordered_json funnel_json(const Funnel& funnel);
 nlohmann::ordered_json friction_json(const Friction& friction);
 nlohmann::ordered_json kit_json(const model::Kit& kit);
 nlohmann::ordered_json design_json(const model::Design& design);

@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-#include "host/base/files.hpp"
+#include "host/base/json_document.hpp"
 #include "host/base/json_fields.hpp"
 #include "host/base/json_places.hpp"
 #include "host/planner/plan/json_values.hpp"
@@ -15,13 +15,6 @@ using base::JsonField;
 using nlohmann::ordered_json;
 
 constexpr const char* kFormat = "pinjaw-plan/1";
-
-ordered_json funnel_json(const Funnel& funnel) {
-  return {
-      {"features", funnel.features}, {"planar", funnel.planar},           {"heights", funnel.heights},
-      {"loadable", funnel.loadable}, {"not_wedging", funnel.not_wedging}, {"resistable", funnel.resistable},
-      {"strong", funnel.strong}};
-}
 
 Funnel read_funnel(const JsonField& field) {
   return {field.whole("features"), field.whole("planar"),      field.whole("heights"),
@@ -98,18 +91,11 @@ std::string to_json(const Plan& plan) {
 }
 
 base::Checked<Plan> read_plan(const std::filesystem::path& path) {
-  const std::string name = path.string();
-  const auto bytes = base::read_file(path);
-  if (!bytes) return tl::unexpected(base::Diagnostics({{name, 0, 0}, "", bytes.error().message}));
-  const auto document = base::parse_json(*bytes, name);
+  const auto document = base::read_json_document(path, kFormat);
   if (!document) return tl::unexpected(document.error());
 
   base::Diagnostics mistakes;
-  const JsonField top(&*document, "", &name, &mistakes);
-  if (top.text("format") != kFormat) {
-    base::Diagnostics other_kind({{name, 0, 0}, "format", std::string("expected ") + kFormat});
-    return tl::unexpected(base::placed_in_json(other_kind, *bytes));
-  }
+  const JsonField top(&document->value, "", &document->name, &mistakes);
   Plan plan;
   plan.task = top.text("task");
   const JsonField part = top.at("part");
@@ -129,7 +115,7 @@ base::Checked<Plan> read_plan(const std::filesystem::path& path) {
   plan.disturbances = read_disturbances(top.at("disturbances"));
   plan.funnel = read_funnel(top.at("funnel"));
   for (const JsonField& design : top.at("designs").list()) plan.designs.push_back(read_design(design));
-  if (!mistakes.empty()) return tl::unexpected(base::placed_in_json(mistakes, *bytes));
+  if (!mistakes.empty()) return tl::unexpected(base::placed_in_json(mistakes, document->text));
   return plan;
 }
 

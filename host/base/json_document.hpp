@@ -1,0 +1,22 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "host/base/diagnostics.hpp"
+
+namespace pinjaw::base {
+
+/// A JSON file that a program wrote, parsed, with the text that places its mistakes.
+struct JsonDocument {
+  std::string name;  ///< of the file, as diagnostics call it
+  std::string text;
+  nlohmann::json value;
+};
+
+/// Reads a file whose top-level `format` must be `format`, or tells why it is none: unreadable, not JSON,
+/// another kind.
+Checked<JsonDocument> read_json_document(const std::filesystem::path& path, const std::string& format);
+
+}  // namespace pinjaw::base
