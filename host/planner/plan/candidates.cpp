@@ -81,6 +81,7 @@ std::vector<Outcome> stand_and_load(const std::vector<PlanarFixture>& fixtures, 
   std::vector<Outcome> outcomes(fixtures.size(), HeightLoss::NoEngagement);
   Counter counter(progress, "heights", static_cast<std::int64_t>(fixtures.size()));
   tbb::parallel_for(std::size_t{0}, fixtures.size(), [&](std::size_t i) {
+    if (options.stop.stop_requested()) return;
     outcomes[i] = design_of(fixtures[i], heights, kit, surroundings, loading);
     counter.add_one();
   });
@@ -102,6 +103,7 @@ base::Expected<Candidates> find_candidates(const model::Task& task, const Scene&
   planar.outline = scene.turned.profile ? &*scene.turned.profile : nullptr;
   planar.twins = Twins::Once;
   planar.threads = options.threads;
+  planar.stop = options.stop;
   std::mutex mutex;
   if (progress) {
     planar.progress = [&](double share) {
@@ -125,6 +127,7 @@ base::Expected<Candidates> find_candidates(const model::Task& task, const Scene&
     ++candidates.funnel.loadable;
     candidates.designs.push_back(std::move(std::get<model::Design>(outcome)));
   }
+  if (options.stop.stop_requested()) return base::failure("the plan was stopped before its end");
   return candidates;
 }
 

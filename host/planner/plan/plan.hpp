@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -62,8 +63,9 @@ model::Task task_of(const Plan& plan);
 struct PlanOptions {
   model::FrictionModel friction = model::FrictionModel::Pyramid;
   bool loading_2d = false;
-  std::size_t top = 100;  ///< designs kept in the plan; 0 keeps all
-  int threads = 0;        ///< 0: as many as the machine has
+  std::size_t top = 100;      ///< designs kept in the plan; 0 keeps all
+  int threads = 0;            ///< 0: as many as the machine has
+  std::stop_token stop = {};  ///< asks the plan to end early, with a Failure
 };
 
 /// How far a plan has come; `total` is 0 where it cannot be told.

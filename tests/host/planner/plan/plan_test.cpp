@@ -52,6 +52,20 @@ TEST(Plan, lists_the_smallest_squeeze_first_and_no_design_twice) {
   EXPECT_TRUE(std::ranges::is_sorted(plan.designs, {}, [](const auto& d) { return d.squeeze.required_n; }));
 }
 
+TEST(Plan, that_is_stopped_in_any_phase_says_so_and_gives_no_half_an_answer) {
+  for (const std::string phase : {"planar", "heights"}) {
+    std::stop_source stop;
+    const auto at = [&](const Progress& progress) {
+      if (progress.phase == phase) stop.request_stop();
+    };
+    PlanOptions options;
+    options.stop = stop.get_token();
+    const auto plan = make_plan(cam().task, cam().scene, options, at);
+    ASSERT_TRUE(stop.stop_requested()) << phase;
+    EXPECT_FALSE(plan.has_value()) << phase;
+  }
+}
+
 TEST(Plan, keeps_the_best_where_only_some_are_asked_for) {
   const Planned some = plan_of("cam", {.top = 5});
   ASSERT_EQ(some.plan.designs.size(), 5U);
