@@ -35,13 +35,12 @@ function(pinjaw_library name)
 endfunction()
 
 # pinjaw_test(NAME SOURCES ... DEPENDS ... USES ... [LABELS ...] [TIMEOUT s])
-# GoogleTest's main; the test sees the checkout as PINJAW_SOURCE_DIR and the programs as PINJAW_BIN_DIR.
+# A test labelled `long` runs under ./dev test --all only. GoogleTest's main; tests/support/places.hpp tells where the checkout and the programs are.
 function(pinjaw_test name)
   cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;DEPENDS;USES;LABELS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
-  target_link_libraries(${name} PRIVATE pinjaw_flags ${ARG_DEPENDS} ${ARG_USES} GTest::gmock GTest::gtest_main)
-  target_compile_definitions(${name} PRIVATE
-    PINJAW_SOURCE_DIR="${PROJECT_SOURCE_DIR}" PINJAW_BIN_DIR="${CMAKE_BINARY_DIR}/bin")
+  target_link_libraries(${name} PRIVATE pinjaw_flags ${ARG_DEPENDS} ${ARG_USES} pinjaw_test_places
+    GTest::gmock GTest::gtest_main)
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 300)
   endif()

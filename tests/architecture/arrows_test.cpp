@@ -11,11 +11,13 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/places.hpp"
+
 namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kRoot = PINJAW_SOURCE_DIR;
+const fs::path kRoot = pinjaw::test::source_dir();
 
 struct Rule {
   std::set<std::string> may_include;

@@ -1,16 +1,10 @@
-// Squeeze programs a second: ours beside GLPK, CLP and a plain dense tableau, in one process, by its CPU
-// time. Usage: pinjaw_bench_force [FILE.json]
-
+// Squeeze programs: ours beside GLPK, CLP and a plain dense tableau.
 #include <coin/Clp_C_Interface.h>
 #include <glpk.h>
-#include <sys/utsname.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <ctime>
-#include <fstream>
 #include <functional>
 #include <memory>
 #include <string>
@@ -19,6 +13,8 @@
 #include "host/planner/force/closure.hpp"
 #include "host/planner/force/ray_program.hpp"
 #include "host/planner/force/squeeze.hpp"
+#include "tests/bench/suites.hpp"
+#include "tests/bench/support/cpu_time.hpp"
 #include "tests/host/planner/force/zoo.hpp"
 
 namespace pinjaw::planner {
@@ -28,7 +24,7 @@ using RightHandSide = std::array<double, kernel::kRows>;
 
 constexpr int kLoads = 302;   // BB's 300 sprays and 2 accelerations
 constexpr int kRepeats = 5;   // the median counts
-constexpr int kCompared = 5;  // grasps that every solver does, and whose mean force is shown
+constexpr int kCompared = 5;  // grasps that the slow ones do
 
 /// One grasp's program and its loads, as every solver gets them.
 struct Case {
@@ -56,12 +52,6 @@ std::vector<std::unique_ptr<Case>> cases(int count) {
     all.push_back(std::move(one));
   }
   return all;
-}
-
-double cpu_s() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
 /// Solves every load of a case; the sum of the forces, so that nothing is optimised away and answers can be
@@ -215,29 +205,30 @@ double with_tableau(const Case& one) {
 
 struct Row {
   std::string name;
-  double per_second = 0;
-  double mean_n = 0;
+  int grasps = 0;
+  Solve solve;
+  double us = 0;  // of CPU time, each program
 };
 
-/// Median over the repeats of programs a second, over the first `count` cases.
-Row measured(const std::string& name, const std::vector<std::unique_ptr<Case>>& all, int count,
-             const Solve& solve) {
-  std::vector<double> seconds;
-  double sum = 0;
-  for (int repeat = 0; repeat < kRepeats; ++repeat) {
-    sum = 0;
-    const double from_s = cpu_s();
-    for (int i = 0; i < count; ++i) {
-      const double of_this_n = solve(*all[static_cast<std::size_t>(i)]);
-      if (i < kCompared) sum += of_this_n;
-    }
-    seconds.push_back(cpu_s() - from_s);
+/// Fills the time of each row; they take turns.
+void measure(std::vector<Row>& rows, const std::vector<std::unique_ptr<Case>>& all) {
+  std::vector<bench::Contestant> contestants;
+  for (const Row& row : rows) {
+    contestants.push_back({row.name, [&all, &row] {
+                             for (int i = 0; i < row.grasps; ++i)
+                               row.solve(*all[static_cast<std::size_t>(i)]);
+                           }});
   }
-  std::nth_element(seconds.begin(), seconds.begin() + kRepeats / 2, seconds.end());
-  return {name, count * kLoads / seconds[kRepeats / 2], sum / (kCompared * kLoads)};
+  const std::vector<double> seconds = bench::median_cpu_s(contestants, kRepeats);
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i].us = 1e6 * seconds[i] / (rows[i].grasps * kLoads);
 }
 
-std::vector<Row> measure_all(const std::vector<std::unique_ptr<Case>>& all) {
+}  // namespace
+}  // namespace pinjaw::planner
+
+void pinjaw::bench::measure_squeeze(Report& report) {
+  using namespace pinjaw::planner;
+  const auto all = cases(40);
   const int many = static_cast<int>(all.size());
   const auto memory = std::make_unique<kernel::Memory>();
   SqueezeSolver solver;
@@ -246,52 +237,21 @@ std::vector<Row> measure_all(const std::vector<std::unique_ptr<Case>>& all) {
   const kernel::Kernel* const* kernels = kernel::kernels(count);
   for (int k = count - 1; k >= 0; --k) {
     const kernel::Kernel& kernel = *kernels[k];
-    rows.push_back(measured(std::string("pinjaw kernel, ") + kernel.name, all, many,
-                            [&](const Case& one) { return with_kernel(kernel, *memory, one); }));
+    rows.push_back({std::string("squeeze program, 8 contacts, ") + kernel.name, many,
+                    [&](const Case& one) { return with_kernel(kernel, *memory, one); }});
   }
-  rows.push_back(measured("pinjaw SqueezeSolver, pyramid", all, many, [&](const Case& one) {
-    return with_solver(solver, model::FrictionModel::Pyramid, one);
-  }));
-  rows.push_back(measured("pinjaw SqueezeSolver, exact cone", all, kCompared, [&](const Case& one) {
-    return with_solver(solver, model::FrictionModel::Cone, one);
-  }));
-  rows.push_back(measured("Eigen dense tableau, cold", all, kCompared, with_tableau));
-  rows.push_back(
-      measured("GLPK, warm dual", all, kCompared, [](const Case& one) { return with_glpk(true, one); }));
-  rows.push_back(
-      measured("GLPK, cold primal", all, kCompared, [](const Case& one) { return with_glpk(false, one); }));
-  rows.push_back(measured("CLP, warm dual", all, kCompared, with_clp));
-  return rows;
-}
-
-void write_json(const std::vector<Row>& rows, const std::string& path) {
-  utsname machine{};
-  uname(&machine);
-  std::ofstream file(path);
-  file << "[\n";
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    file << "  {\"name\": \"squeeze program, 8 contacts\", \"peer\": \"" << rows[i].name
-         << "\", \"ours\": " << rows[0].per_second << ", \"theirs\": " << rows[i].per_second
-         << ", \"ratio\": " << rows[0].per_second / rows[i].per_second
-         << ", \"unit\": \"1/s of CPU time\", \"machine\": \"" << machine.machine << "\"}"
-         << (i + 1 < rows.size() ? ",\n" : "\n");
+  const auto ours = static_cast<std::size_t>(count);
+  rows.push_back({"Eigen dense tableau, cold", kCompared, with_tableau});
+  rows.push_back({"GLPK, warm dual", kCompared, [](const Case& one) { return with_glpk(true, one); }});
+  rows.push_back({"GLPK, cold primal", kCompared, [](const Case& one) { return with_glpk(false, one); }});
+  rows.push_back({"CLP, warm dual", kCompared, with_clp});
+  rows.push_back({"exact cone, 8 contacts", kCompared,
+                  [&](const Case& one) { return with_solver(solver, model::FrictionModel::Cone, one); }});
+  measure(rows, all);
+  for (std::size_t i = 0; i < ours; ++i) {
+    Measurement measured{rows[i].name, "us of CPU time", rows[i].us};
+    for (std::size_t p = ours; p + 1 < rows.size(); ++p) measured.peers.push_back({rows[p].name, rows[p].us});
+    report.add(std::move(measured));
   }
-  file << "]\n";
-}
-
-}  // namespace
-}  // namespace pinjaw::planner
-
-int main(int argc, char** argv) {
-  using namespace pinjaw::planner;
-  const auto all = cases(40);
-  const std::vector<Row> rows = measure_all(all);
-  std::printf("%-36s %12s %10s %8s %14s\n", "8 contacts, 302 loads a grasp", "programs/s", "us each", "ratio",
-              "mean F_sq N");
-  for (const Row& row : rows) {
-    std::printf("%-36s %12.0f %10.3f %8.1f %14.6f\n", row.name.c_str(), row.per_second, 1e6 / row.per_second,
-                rows[0].per_second / row.per_second, row.mean_n);
-  }
-  if (argc > 1) write_json(rows, argv[1]);
-  return 0;
+  report.add({rows.back().name, "us of CPU time", rows.back().us});
 }

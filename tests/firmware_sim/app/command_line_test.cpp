@@ -8,6 +8,8 @@
 #include <fstream>
 #include <string>
 
+#include "tests/support/places.hpp"
+
 namespace {
 
 using ::testing::HasSubstr;
@@ -18,7 +20,7 @@ struct Ran {
 };
 
 Ran run(const std::string& arguments) {
-  const std::string command = std::string(PINJAW_BIN_DIR) + "/pinjaw-jaw " + arguments + " 2>&1";
+  const std::string command = test::program("pinjaw-jaw") + " " + arguments + " 2>&1";
   Ran ran;
   FILE* pipe = popen(command.c_str(), "r");
   if (pipe == nullptr) return ran;

@@ -2,6 +2,7 @@
 #include <sys/stat.h>
 
 #include "tests/host/app/child.hpp"
+#include "tests/support/places.hpp"
 
 /// Each kind of file with mistakes, through the program: exit code 3, places, keys, a count, and nothing
 /// written.
@@ -124,7 +125,7 @@ TEST_P(Unreadable, files_are_told_as_what_they_are) {
               HasSubstr("missing.file: error: cannot be read: No such file or directory"));
   EXPECT_THAT(told("/"), HasSubstr("/: error: is a folder, not a file"));
   EXPECT_THAT(told("/dev/zero"), HasSubstr("/dev/zero: error: is not a regular file"));
-  EXPECT_THAT(told(std::string(PINJAW_BIN_DIR) + "/pinjaw"), HasSubstr("error: "));
+  EXPECT_THAT(told(test::program("pinjaw")), HasSubstr("error: "));
   bench.write("empty", "");
   EXPECT_THAT(told("empty"), HasSubstr("empty"));
 }

@@ -13,6 +13,8 @@
 #include <stdexcept>
 #include <thread>
 
+#include "tests/support/places.hpp"
+
 extern char** environ;
 
 namespace pinjaw::app_test {
@@ -59,8 +61,7 @@ class Child {
         const std::vector<std::string>& environment)
       : out_(folder.string() + ".out"), err_(folder.string() + ".err") {
     std::vector<std::string> words = split(arguments);
-    words.insert(words.begin(),
-                 program.starts_with('/') ? program : std::string(PINJAW_BIN_DIR) + "/" + program);
+    words.insert(words.begin(), program.starts_with('/') ? program : test::program(program));
     std::vector<std::string> variables = plain_environment();
     variables.insert(variables.end(), environment.begin(), environment.end());
     posix_spawn_file_actions_t actions;
@@ -137,7 +138,7 @@ std::vector<std::string> Bench::names() const {
 }
 
 std::string shipped(const std::string& path) {
-  return std::string(PINJAW_SOURCE_DIR) + "/" + path;
+  return test::source_dir(path);
 }
 
 }  // namespace pinjaw::app_test

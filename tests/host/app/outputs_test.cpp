@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "tests/host/app/child.hpp"
+#include "tests/support/places.hpp"
 
 /// Where results, remarks and errors go, and that files appear whole or not.
 namespace pinjaw::app_test {
@@ -99,7 +100,7 @@ TEST(Output, that_would_replace_what_is_read_is_refused) {
 
 TEST(Output, that_stdout_does_not_take_is_told) {
   const Bench bench;
-  bench.write("full.sh", std::string("exec ") + PINJAW_BIN_DIR + "/pinjaw plan " + kTask + " > /dev/full\n");
+  bench.write("full.sh", "exec " + test::program("pinjaw") + " plan " + kTask + " > /dev/full\n");
   const Ran full = bench.run("/bin/sh", "full.sh");
   EXPECT_EQ(full.exit_code, 3);
   EXPECT_THAT(full.err, HasSubstr("cannot write the result to stdout: No space left on device"));

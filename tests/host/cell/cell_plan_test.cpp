@@ -12,6 +12,7 @@
 
 #include "host/config/read.hpp"
 #include "host/planner/interference/interference.hpp"
+#include "tests/support/places.hpp"
 
 namespace pinjaw::cell {
 namespace {
@@ -29,7 +30,7 @@ struct Shipped {
 
 const Shipped& shipped() {
   static const Shipped once = [] {
-    const auto cell = config::read_cell(std::filesystem::path(PINJAW_SOURCE_DIR) / "configs/cells/acc.yaml");
+    const auto cell = config::read_cell(test::source_dir("configs/cells/acc.yaml"));
     if (!cell) throw std::runtime_error(base::render(cell.error(), "no cell"));
     const auto plan = make_cell_plan(*cell, {});
     if (!plan) throw std::runtime_error(plan.error().message);

@@ -10,6 +10,7 @@
 #include "host/base/files.hpp"
 #include "host/config/materials.hpp"
 #include "host/config/read.hpp"
+#include "tests/support/places.hpp"
 
 /// Every FILE.yaml in tests/bad_files/KIND/ is read as that kind; what is told must be FILE.expected, word
 /// for word, with places counted from tests/bad_files/. PINJAW_WRITE_EXPECTED=1 writes the files anew, to be
@@ -19,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kFolder = fs::path(PINJAW_SOURCE_DIR) / "tests" / "bad_files";
+const fs::path kFolder = test::source_dir("tests/bad_files");
 
 using Reader = std::function<base::Diagnostics(const fs::path&)>;
 
@@ -44,7 +45,7 @@ const std::map<std::string, Reader>& readers() {
 
 /// The text with the checkout's own path left out.
 std::string portable(std::string text) {
-  for (const std::string& prefix : {kFolder.string() + "/", std::string(PINJAW_SOURCE_DIR) + "/"}) {
+  for (const std::string& prefix : {kFolder.string() + "/", test::source_dir() + "/"}) {
     for (auto at = text.find(prefix); at != std::string::npos; at = text.find(prefix))
       text.erase(at, prefix.size());
   }

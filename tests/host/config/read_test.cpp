@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "host/base/sha256.hpp"
+#include "tests/support/places.hpp"
 
 namespace pinjaw::config {
 namespace {
@@ -131,7 +132,7 @@ disturbances:
 }
 
 TEST_F(ReadFiles, faults_of_a_sequence_become_shares_and_step_numbers) {
-  const std::string cell = std::string(PINJAW_SOURCE_DIR) + "/configs/cells/acc.yaml";
+  const std::string cell = test::source_dir("configs/cells/acc.yaml");
   const auto read = read_sequence(write("s.yaml", "sequence: s\ncell: " + cell + R"(
 steps:
   - place: {on: pallet}

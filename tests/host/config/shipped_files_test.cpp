@@ -5,11 +5,12 @@
 
 #include "host/config/materials.hpp"
 #include "host/config/read.hpp"
+#include "tests/support/places.hpp"
 
 namespace pinjaw::config {
 namespace {
 
-const std::filesystem::path kConfigs = std::filesystem::path(PINJAW_SOURCE_DIR) / "configs";
+const std::filesystem::path kConfigs = test::source_dir("configs");
 
 /// Mistakes of every file in a folder of configs/, rendered; empty where all are clean.
 template <class T>

@@ -6,11 +6,12 @@
 #include <string>
 
 #include "host/part/part.hpp"
+#include "tests/support/places.hpp"
 
 namespace pinjaw::part {
 
 inline std::filesystem::path shipped(const std::string& name) {
-  return std::filesystem::path(PINJAW_SOURCE_DIR) / "configs/parts" / (name + ".step");
+  return test::source_dir("configs/parts/" + name + ".step");
 }
 
 inline model::PartSource source_of(const std::filesystem::path& file) {

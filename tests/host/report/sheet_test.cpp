@@ -12,6 +12,7 @@
 
 #include "host/base/files.hpp"
 #include "host/config/read.hpp"
+#include "tests/support/places.hpp"
 
 namespace pinjaw::report {
 namespace {
@@ -19,8 +20,7 @@ namespace {
 /// A sheet of a square part of 24 mm between four pins of a shipped kit.
 Sheet sheet_for(const std::string& kit_name) {
   Sheet sheet;
-  sheet.kit =
-      config::read_kit(std::string(PINJAW_SOURCE_DIR) + "/configs/kits/" + kit_name + ".yaml").value();
+  sheet.kit = config::read_kit(test::source_dir("configs/kits/" + kit_name + ".yaml")).value();
   sheet.task = "valve-housing-pedestal";
   sheet.part = "valve_housing.step";
   sheet.side = "below";

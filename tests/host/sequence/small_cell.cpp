@@ -8,13 +8,14 @@
 #include "host/config/read.hpp"
 #include "protocol/bus/candump.hpp"
 #include "protocol/bus/sim_bus.hpp"
+#include "tests/support/places.hpp"
 
 namespace pinjaw::sequence::testing {
 
 namespace {
 
 SmallCell make_small_cell() {
-  const auto cell = config::read_cell(PINJAW_SOURCE_DIR "/tests/host/sequence/small/cell.yaml");
+  const auto cell = config::read_cell(test::source_dir("tests/host/sequence/small/cell.yaml"));
   if (!cell) throw std::runtime_error(base::render(cell.error(), "no cell"));
   auto scene = planner::read_scene(cell->stations.front().task);
   if (!scene) throw std::runtime_error(scene.error().message);

@@ -11,6 +11,7 @@
 #include "protocol/bus/candump.hpp"
 #include "tests/protocol/describe/our_decoding.hpp"
 #include "tests/protocol/wire/sample_messages.hpp"
+#include "tests/support/places.hpp"
 
 /// Random frames of every message go into a candump log; canmatrix decodes it by our DBC; its numbers must be
 /// ours.
@@ -50,17 +51,17 @@ TEST(Canmatrix, reads_in_a_log_what_our_codec_reads) {
   const std::vector<Frame> frames = random_frames(120);
   const std::string folder = std::filesystem::temp_directory_path().string() + "/canmatrix_test." +
                              std::to_string(::testing::UnitTest::GetInstance()->random_seed()) + '.' +
-                             std::to_string(std::hash<std::string>{}(PINJAW_BIN_DIR));
+                             std::to_string(std::hash<std::string>{}(test::program()));
   std::filesystem::create_directories(folder);
   {
     std::ofstream log(folder + "/frames.log");
     std::int64_t time_us = 0;
     for (const Frame& frame : frames) log << bus::to_log_line({time_us += 270, "can0", frame}) << '\n';
   }
-  const std::string command =
-      "/usr/bin/python3 " PINJAW_SOURCE_DIR
-      "/tests/protocol/describe/decode_with_canmatrix.py " PINJAW_SOURCE_DIR "/protocol/pinjaw.dbc " +
-      folder + "/frames.log > " + folder + "/decoded.json 2> " + folder + "/errors.txt";
+  const std::string command = "/usr/bin/python3 " +
+                              test::source_dir("tests/protocol/describe/decode_with_canmatrix.py") + " " +
+                              test::source_dir("protocol/pinjaw.dbc") + " " + folder + "/frames.log > " +
+                              folder + "/decoded.json 2> " + folder + "/errors.txt";
   ASSERT_EQ(std::system(command.c_str()), 0) << "needs Debian's python3-canmatrix: " << command;
 
   std::ifstream decoded(folder + "/decoded.json");

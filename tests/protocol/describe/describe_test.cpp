@@ -9,12 +9,13 @@
 
 #include "protocol/describe/physical.hpp"
 #include "protocol/wire/table.hpp"
+#include "tests/support/places.hpp"
 
 namespace pinjaw::describe {
 namespace {
 
 std::string content(const std::string& path) {
-  std::ifstream file(std::string(PINJAW_SOURCE_DIR) + '/' + path);
+  std::ifstream file(test::source_dir(path));
   EXPECT_TRUE(file.good()) << path;
   std::stringstream text;
   text << file.rdbuf();

@@ -7,6 +7,7 @@
 
 #include "protocol/bus/candump.hpp"
 #include "tests/protocol/describe/our_decoding.hpp"
+#include "tests/support/places.hpp"
 
 /// The log that candump wrote of a whole run on vcan, decoded by canmatrix with our DBC and by our codec.
 namespace pinjaw::wire {
@@ -15,10 +16,9 @@ namespace {
 TEST(CandumpLog, says_the_same_to_canmatrix_and_to_our_codec) {
   const std::string log = OUT_DIR "/candump.log";
   const std::string decoded_file = OUT_DIR "/decoded.json";
-  const std::string command = "/usr/bin/python3 " PINJAW_SOURCE_DIR
-                              "/tests/protocol/describe/decode_with_canmatrix.py " PINJAW_SOURCE_DIR
-                              "/protocol/pinjaw.dbc " +
-                              log + " > " + decoded_file;
+  const std::string command = "/usr/bin/python3 " +
+                              test::source_dir("tests/protocol/describe/decode_with_canmatrix.py") + " " +
+                              test::source_dir("protocol/pinjaw.dbc") + " " + log + " > " + decoded_file;
   ASSERT_EQ(std::system(command.c_str()), 0) << "needs Debian's python3-canmatrix: " << command;
 
   std::ifstream lines(log);

@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "tests/scenarios/vcan/programs.hpp"
+#include "tests/support/places.hpp"
 
 /// The cleaning sequence on a real vcan: pinjaw, pinjaw-jaw with three controllers, and candump, which hears
 /// it all.
@@ -46,7 +47,7 @@ TEST(CleaningOnVcan, plays_to_its_end_with_the_part_held_and_the_force_within_it
 TEST(CleaningOnVcan, a_host_killed_in_the_middle_of_a_handoff_leaves_the_part_held) {
   Controllers controllers(kThree);
   std::vector<std::string> command = run_command(controllers, kOut + "/never.json");
-  command.insert(command.begin(), PINJAW_BIN_DIR "/pinjaw");
+  command.insert(command.begin(), test::program("pinjaw"));
   command.insert(command.end(), {"--bus", "can:vcan0"});
   Process host(command);
   const auto arm_and_pedestal_touch = [](const bench::Truth& truth) {

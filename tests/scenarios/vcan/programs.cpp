@@ -12,6 +12,8 @@
 #include <stdexcept>
 #include <thread>
 
+#include "tests/support/places.hpp"
+
 namespace pinjaw::scenario {
 
 namespace {
@@ -28,7 +30,7 @@ std::string new_folder() {
 }
 
 std::vector<std::string> jaw_command(const std::vector<std::string>& names, const std::string& path) {
-  std::vector<std::string> command = {PINJAW_BIN_DIR "/pinjaw-jaw"};
+  std::vector<std::string> command = {test::program("pinjaw-jaw")};
   for (const std::string& name : names) command.push_back(config("controllers/" + name + ".yaml"));
   command.insert(command.end(), {"--bus", "can:vcan0", "--world", path});
   return command;
@@ -72,7 +74,7 @@ int Process::wait(std::chrono::seconds patience) {
 }
 
 int pinjaw(std::vector<std::string> arguments, const std::string& output) {
-  arguments.insert(arguments.begin(), PINJAW_BIN_DIR "/pinjaw");
+  arguments.insert(arguments.begin(), test::program("pinjaw"));
   arguments.insert(arguments.end(), {"--bus", "can:vcan0"});
   return Process(std::move(arguments), output).wait();
 }
@@ -111,7 +113,7 @@ bool Controllers::comes_true(const std::function<bool(const bench::Truth&)>& con
 }
 
 std::string config(const std::string& name) {
-  return PINJAW_SOURCE_DIR "/configs/" + name;
+  return test::source_dir("configs/" + name);
 }
 
 std::string content(const std::string& path) {

@@ -19,6 +19,7 @@
 #include <stdexcept>
 
 #include "host/part/placing.hpp"
+#include "tests/support/places.hpp"
 
 namespace pinjaw::planner {
 namespace {
@@ -104,7 +105,7 @@ part::Shape filleted_box(const Box3& box, double radius_mm) {
 }
 
 part::Shape shipped_shape(const std::string& name) {
-  const std::string file = std::string(PINJAW_SOURCE_DIR) + "/configs/parts/" + name + ".step";
+  const std::string file = test::source_dir("configs/parts/" + name + ".step");
   std::ifstream in(file);
   std::stringstream text;
   text << in.rdbuf();

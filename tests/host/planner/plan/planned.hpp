@@ -7,6 +7,7 @@
 
 #include "host/config/read.hpp"
 #include "host/planner/plan/plan.hpp"
+#include "tests/support/places.hpp"
 
 /// Plans of shipped tasks, made once a program.
 namespace pinjaw::planner {
@@ -18,8 +19,7 @@ struct Planned {
 };
 
 inline Planned plan_of(const std::string& name, const PlanOptions& options) {
-  const auto task =
-      config::read_task(std::filesystem::path(PINJAW_SOURCE_DIR) / "configs/tasks" / (name + ".yaml"));
+  const auto task = config::read_task(test::source_dir("configs/tasks/" + name + ".yaml"));
   if (!task) throw std::runtime_error(base::render(task.error(), "no task"));
   auto scene = read_scene(*task);
   if (!scene) throw std::runtime_error(scene.error().message);

@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "tests/support/places.hpp"
+
 namespace pinjaw::planner {
 namespace {
 
@@ -15,7 +17,7 @@ using nlohmann::json;
 constexpr double kDegree = std::numbers::pi / 180;
 
 json read_json(const std::string& name, const std::string& file) {
-  std::ifstream in(std::string(PINJAW_SOURCE_DIR) + "/tests/host/planner/planar/cases/" + name + "/" + file);
+  std::ifstream in(test::source_dir("tests/host/planner/planar/cases/" + name + "/" + file));
   return json::parse(in);
 }
 

@@ -1,0 +1,10 @@
+#pragma once
+
+#include "tests/bench/support/report.hpp"
+
+/// What the bench measures, one function a subject. Each measures its peers in the same run.
+namespace pinjaw::bench {
+
+void measure_squeeze(Report& report);
+
+}  // namespace pinjaw::bench
