@@ -20,7 +20,7 @@ struct Ran {
 };
 
 Ran run(const std::string& arguments) {
-  const std::string command = test::program("pinjaw-jaw") + " " + arguments + " 2>&1";
+  const std::string command = pinjaw::test::program("pinjaw-jaw") + " " + arguments + " 2>&1";
   Ran ran;
   FILE* pipe = popen(command.c_str(), "r");
   if (pipe == nullptr) return ran;
