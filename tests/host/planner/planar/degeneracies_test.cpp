@@ -56,6 +56,31 @@ TEST(PlanarDegeneracies, two_pins_of_a_jaw_on_one_edge_are_found) {
   }
 }
 
+TEST(PlanarDegeneracies, two_pins_of_a_jaw_on_parallel_edges_are_found) {
+  const auto stepped = polygon_profile({Vector2d(0, 0), Vector2d(22, -7), Vector2d(44, 14), Vector2d(20, 38),
+                                        Vector2d(-4, 33), Vector2d(-4, 16), Vector2d(0, 16)});
+  const auto fixtures = all_fixtures(stepped, small_kit(3, 4));
+  const auto on_both_steps = [](const PlanarFixture& fixture) {
+    return fixture.pins[0].hole.jaw == fixture.pins[1].hole.jaw &&
+           std::minmax(fixture.pins[0].feature, fixture.pins[1].feature) == std::minmax(4, 6);
+  };
+  EXPECT_TRUE(std::ranges::any_of(fixtures, on_both_steps));
+}
+
+TEST(PlanarDegeneracies, three_pins_of_a_jaw_on_one_edge_never_hold) {
+  const auto wedge = polygon_profile({Vector2d(0, 0), Vector2d(60, 0), Vector2d(30, 24)});
+  const auto fixtures = all_fixtures(wedge, small_kit(4, 6));
+  EXPECT_GT(fixtures.size(), 100U);
+  for (const PlanarFixture& fixture : fixtures) {
+    for (const std::size_t first : {0U, 1U}) {
+      const bool one_jaw = fixture.pins[first].hole.jaw == fixture.pins[first + 2].hole.jaw;
+      const bool one_edge = fixture.pins[first].feature == fixture.pins[first + 1].feature &&
+                            fixture.pins[first].feature == fixture.pins[first + 2].feature;
+      EXPECT_FALSE(one_jaw && one_edge);
+    }
+  }
+}
+
 TEST(PlanarDegeneracies, a_disc_turns_in_any_pins_and_has_no_fixture) {
   model::ProfileEdge edge;
   edge.curve = Arc{Vector2d(3, 4), 18, 0.3, 2 * kPi};
@@ -118,6 +143,48 @@ TEST(PlanarDegeneracies, an_edge_told_as_two_gives_the_same_poses) {
   }
 }
 
+TEST(PlanarDegeneracies, feet_exactly_at_both_ends_of_an_edge_hold) {
+  const auto fixtures = all_fixtures(kite(), small_kit(3, 4));  // its back is three spacings long
+  EXPECT_TRUE(std::ranges::any_of(fixtures, [](const PlanarFixture& fixture) {
+    return fixture.split == model::Split::TwoTwo && fixture.pins[0].feature == 4 &&
+           fixture.pins[1].feature == 4 && fixture.pins[1].hole.row - fixture.pins[0].hole.row == 3 &&
+           fixture.pins[0].foot_margin_mm < 1e-9 && fixture.pins[1].foot_margin_mm < 1e-9;
+  }));
+}
+
+/// A flat back along y at x = 0; on the right a dent whose two walls both push up, in which a pin of 2.4 mm
+/// stands at (38, 11), and a roof that another touches from (38, 33).
+model::Profile dented() {
+  const Vector2d n1 = geometry::direction(-0.3);
+  const Vector2d n2 = geometry::direction(-0.9);
+  const Vector2d nr = geometry::direction(0.5);
+  const auto along = [](const Vector2d& n) { return Vector2d(-n.y(), n.x()); };
+  const Vector2d corner = Vector2d(38, 11) - 2.4 / (1 + n1.dot(n2)) * (n1 + n2);
+  const Vector2d roof = Vector2d(38, 33) - 2.4 * nr;
+  return polygon_profile({Vector2d(0, 0), Vector2d(20, -8), corner - 8 * along(n1), corner,
+                          corner + 6 * along(n2), roof - 7 * along(nr), roof + 7 * along(nr),
+                          Vector2d(0, 36)});
+}
+
+TEST(PlanarDegeneracies, a_pin_that_touches_both_walls_of_a_dent_is_listed_for_the_smaller_id_only) {
+  const auto fixtures = all_fixtures(dented(), small_kit(3, 4));
+  int found = 0;
+  for (const PlanarFixture& fixture : fixtures) {
+    const bool upright = std::abs(std::remainder(fixture.theta_rad, 2 * kPi)) < 1e-9;
+    const bool both_walls =
+        fixture.split == model::Split::TwoTwo && fixture.pins[3].feature == 5 &&
+        (fixture.pins[2].p_PFoot_mm - 2.4 * fixture.pins[2].n_P - Vector2d(38, 11)).norm() < 1e-6;
+    const bool backed = fixture.pins[0].hole.row == 0 && fixture.pins[1].hole.row == 3;  // either wall closes
+    if (!upright || !both_walls || !backed) continue;
+    EXPECT_EQ(fixture.pins[2].feature, 2);
+    ++found;
+  }
+  EXPECT_EQ(found, 1);
+  for (std::size_t i = 0; i < fixtures.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) EXPECT_FALSE(same_pose(fixtures[i], fixtures[k]));
+  }
+}
+
 TEST(PlanarDegeneracies, no_pose_is_listed_twice) {
   for (const char* name : {"lshape", "star12", "arcs"}) {
     const KnownCase known = read_case(name);
@@ -161,6 +228,19 @@ TEST(PlanarDegeneracies, pins_stop_where_they_touch_the_other_wall_of_a_dent) {
   EXPECT_NEAR(curves[3].range.length(), 21 - 2.4, 1e-5);
 }
 
+TEST(PlanarDegeneracies, every_root_is_exact_also_where_symmetry_makes_terms_vanish) {
+  const model::Kit kit = small_kit(3, 4);
+  for (const PlanarFixture& fixture : all_fixtures(kite(), kit)) {
+    const PlacedFixture placed = placed_least(kit, fixture);
+    for (std::size_t k = 0; k < 4; ++k) {
+      const Vector2d p_GHole = model::p_GHole_mm(kit.grid, placed.holes[k], placed.jaw_separation_mm);
+      const Vector2d p_GFoot = placed.part_pose * fixture.pins[k].p_PFoot_mm;
+      const Vector2d n_G = placed.part_pose.turned(fixture.pins[k].n_P);
+      EXPECT_LT((p_GHole + kit.pins.radius_mm * n_G - p_GFoot).norm(), 1e-9);
+    }
+  }
+}
+
 TEST(PlanarDegeneracies, branches_of_an_arc_meet_in_a_fold_without_a_gap) {
   const auto features = model::features_of(rounded_part());
   const auto curves = planar::contact_curves(features, 2.4, nullptr);
@@ -180,6 +260,30 @@ TEST(PlanarDegeneracies, branches_of_an_arc_meet_in_a_fold_without_a_gap) {
     EXPECT_TRUE(lo && hi);
   }
   EXPECT_TRUE(from[0] < to[0] || from[1] < to[1]);
+}
+
+/// A boss and a flat on the left, their offsets flush; a roof on the right whose tip is `off_mm` above half a
+/// row, so that the lower left pin stands as much beside the boss's outermost point.
+model::Profile boss_and_flat(double off_mm) {
+  std::vector<model::ProfileEdge> loop = polygon(
+      {Vector2d(0, -6), Vector2d(24, -12 + off_mm), Vector2d(42, 5.5 + off_mm), Vector2d(24, 23 + off_mm),
+       Vector2d(-6, 30), Vector2d(-6, 9), 6 * geometry::direction(2 * kPi / 3)});
+  loop.back().curve = Arc{Vector2d(0, 0), 6, 2 * kPi / 3, 5 * kPi / 6};
+  return profile_of_loop(loop);
+}
+
+TEST(PlanarDegeneracies, a_fixture_is_not_lost_where_it_passes_a_fold) {
+  for (const double off_mm : {-0.5, -0.02, -1e-3, -1e-5, -1e-7, 0.0, 1e-9, 1e-7, 1e-5, 1e-3, 0.02, 0.5}) {
+    const auto fixtures = all_fixtures(boss_and_flat(off_mm), small_kit(2, 3));
+    const auto held = std::ranges::count_if(fixtures, [](const PlanarFixture& fixture) {
+      const auto& pins = fixture.pins;
+      return fixture.split == model::Split::TwoTwo && pins[0].feature == 6 && pins[1].feature == 4 &&
+             pins[2].feature == 1 && pins[3].feature == 2 && pins[0].hole.row == 0 && pins[1].hole.row == 1 &&
+             pins[0].hole.column == pins[1].hole.column && pins[2].hole.row == 0 && pins[3].hole.row == 1 &&
+             pins[2].hole.column == pins[3].hole.column && std::cos(fixture.theta_rad) > 0.9;
+    });
+    EXPECT_EQ(held, 1) << off_mm;
+  }
 }
 
 /// Two equal bosses one hole apart on the left, a roof on the right.
@@ -235,6 +339,23 @@ TEST(PlanarDegeneracies, a_separation_exactly_at_the_limit_is_in_range) {
   EXPECT_TRUE(
       std::ranges::any_of(kept, [&](const PlanarFixture& one) { return same_pose(one, fixtures.front()); }));
   for (const PlanarFixture& fixture : kept) EXPECT_FALSE(column_shifts(kit, fixture).empty());
+}
+
+TEST(PlanarDegeneracies, the_pins_of_a_fixture_are_a_set_told_from_the_least_hole) {
+  for (const PlanarFixture& fixture : all_fixtures(rounded_part(), small_kit(3, 5))) {
+    int least_row = 99;
+    int least_column[2] = {99, 99};
+    for (std::size_t k = 0; k < 4; ++k) {
+      const model::Hole& hole = fixture.pins[k].hole;
+      EXPECT_TRUE(k == 0 || fixture.pins[k - 1].hole < hole);
+      int& column = least_column[hole.jaw == model::JawSide::Left ? 0 : 1];
+      column = std::min(column, hole.column);
+      least_row = std::min(least_row, hole.row);
+    }
+    EXPECT_EQ(least_row, 0);
+    EXPECT_EQ(least_column[0], 0);
+    EXPECT_EQ(least_column[1], 0);
+  }
 }
 
 TEST(PlanarDegeneracies, a_part_of_threefold_symmetry_lists_each_fixture_three_times) {
