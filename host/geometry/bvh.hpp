@@ -33,21 +33,34 @@ class Bvh {
   /// before b; `leaf(node)` returns true to stop.
   template <class Skip, class First, class Leaf>
   void walk(Skip&& skip, First&& first, Leaf&& leaf) const {
-    if (nodes_.empty()) return;
+    if (nodes_.empty() || skip(nodes_.front())) return;
     std::array<std::int32_t, kMaxDepth + 2> stack{};
-    int depth = 0;
-    stack[0] = 0;
-    while (depth >= 0) {
-      const Node& node = nodes_[static_cast<std::size_t>(stack[static_cast<std::size_t>(depth--)])];
-      if (skip(node)) continue;
+    std::size_t depth = 0;
+    std::int32_t at = 0;
+    while (true) {
+      const Node& node = nodes_[static_cast<std::size_t>(at)];
       if (node.count > 0) {
         if (leaf(node)) return;
-        continue;
+      } else {
+        const Node& one = nodes_[static_cast<std::size_t>(node.first)];
+        const Node& other = nodes_[static_cast<std::size_t>(node.first) + 1];
+        const bool into_one = !skip(one);
+        const bool into_other = !skip(other);
+        if (into_one && into_other) {
+          const bool in_order = first(one, other);
+          stack[depth++] = node.first + (in_order ? 1 : 0);
+          at = node.first + (in_order ? 0 : 1);
+          continue;
+        }
+        if (into_one || into_other) {
+          at = node.first + (into_one ? 0 : 1);
+          continue;
+        }
       }
-      const bool in_order = first(nodes_[static_cast<std::size_t>(node.first)],
-                                  nodes_[static_cast<std::size_t>(node.first) + 1]);
-      stack[static_cast<std::size_t>(++depth)] = node.first + (in_order ? 1 : 0);
-      stack[static_cast<std::size_t>(++depth)] = node.first + (in_order ? 0 : 1);
+      do {  // what was left for later may have fallen out meanwhile
+        if (depth == 0) return;
+        at = stack[--depth];
+      } while (skip(nodes_[static_cast<std::size_t>(at)]));
     }
   }
 

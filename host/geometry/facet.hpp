@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -7,17 +8,31 @@
 
 namespace pinjaw::geometry {
 
-/// One triangle of a surface, ready for queries.
-struct Facet {
-  std::array<Vector3d, 3> p_mm;
-  Vector3d normal = Vector3d::Zero();  ///< unit, outward; zero where the triangle has no area
-  int triangle = 0;                    ///< its place in the mesh
-
-  [[nodiscard]] Box box() const {
-    Box box;
-    for (const Vector3d& p : p_mm) box.include(p);
-    return box;
+/// What a facet's shadow spans along the normals of its edges: where a region lies beyond one of the spans,
+/// it and the facet are apart. Made once a facet, so that most facets are settled without being cut.
+class ShadowSpans {
+ public:
+  explicit ShadowSpans(const Facet& facet) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vector2d along_mm = (facet.p_mm[(i + 1) % 3] - facet.p_mm[i]).head<2>();
+      axes_[i] = Vector2d(-along_mm.y(), along_mm.x());
+      if (const double length_mm = along_mm.norm(); length_mm > 0) axes_[i] /= length_mm;
+      spans_[i] = shadow_span(facet, axes_[i]);
+    }
   }
+
+  /// True only where cutting the facet to the region leaves nothing.
+  template <class Region>
+  [[nodiscard]] bool apart_from(const Region& region) const {
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (apart(spans_[i], region.span(axes_[i]))) return true;
+    }
+    return false;
+  }
+
+ private:
+  std::array<Vector2d, 3> axes_;  ///< unit, square to the edges; zero for an edge without length in plan
+  std::array<Interval, 3> spans_;
 };
 
 /// |n_z| under which a facet counts as upright: its z extremes over any region lie on its edges to within

@@ -8,9 +8,6 @@ namespace {
 
 constexpr Interval kNothing{1, 0};
 
-/// Plan length under which a piece counts as upright: its whole length is over one point.
-constexpr double kPoint_mm = 1e-12;
-
 Vector2d across(const Vector2d& v) {
   return {-v.y(), v.x()};
 }
@@ -52,14 +49,6 @@ Interval hull(const Interval& a, const Interval& b) {
   return {std::min(a.lo, b.lo), std::max(a.hi, b.hi)};
 }
 
-/// Whether the box's shadow reaches within `reach_mm` of the line through `p_mm` square to the unit vector
-/// `normal`.
-bool near_line(const Box& box, const Vector2d& p_mm, const Vector2d& normal, double reach_mm) {
-  const Vector2d center_mm = 0.5 * (box.lo.head<2>() + box.hi.head<2>());
-  const Vector2d half_mm = 0.5 * (box.hi.head<2>() - box.lo.head<2>());
-  return std::abs(normal.dot(center_mm - p_mm)) <= reach_mm + normal.cwiseAbs().dot(half_mm);
-}
-
 }  // namespace
 
 Stadium::Stadium(const Sweep& sweep)
@@ -68,23 +57,14 @@ Stadium::Stadium(const Sweep& sweep)
       radius_mm_(sweep.radius_mm + kTouch_mm),
       length_mm_((sweep.to_mm - sweep.from_mm).norm()),
       along_(Vector2d::Zero()),
-      across_(Vector2d::Zero()) {
+      across_(Vector2d::Zero()),
+      reach_{sweep.from_mm.cwiseMin(sweep.to_mm).array() - radius_mm_,
+             sweep.from_mm.cwiseMax(sweep.to_mm).array() + radius_mm_} {
   if (length_mm_ < kPoint_mm) return;
   along_ = (to_mm_ - from_mm_) / length_mm_;
   across_ = across(along_);
-}
-
-bool Stadium::may_meet(const Box& box) const {
-  const auto lo = box.lo.head<2>();
-  const auto hi = box.hi.head<2>();
-  if (length_mm_ < kPoint_mm) {
-    const Vector2d beside_mm = (lo - from_mm_).cwiseMax(from_mm_ - hi).cwiseMax(0.0);
-    return beside_mm.squaredNorm() <= radius_mm_ * radius_mm_;
-  }
-  const Vector2d low = from_mm_.cwiseMin(to_mm_).array() - radius_mm_;
-  const Vector2d high = from_mm_.cwiseMax(to_mm_).array() + radius_mm_;
-  if ((lo.array() > high.array()).any() || (hi.array() < low.array()).any()) return false;
-  return near_line(box, from_mm_, across_, radius_mm_);
+  along_span_mm_ = span(along_);
+  across_span_mm_ = span(across_);
 }
 
 Interval Stadium::clip(const Vector2d& a_mm, const Vector2d& b_mm) const {
@@ -109,14 +89,11 @@ Oblong::Oblong(const Rectangle& rectangle)
     : center_mm_(rectangle.center_mm),
       along_(rectangle.direction),
       across_(across(rectangle.direction)),
-      half_mm_(rectangle.half_mm.array() + kTouch_mm) {}
-
-bool Oblong::may_meet(const Box& box) const {
-  const Vector2d reach_mm = along_.cwiseAbs() * half_mm_.x() + across_.cwiseAbs() * half_mm_.y();
-  if ((box.lo.head<2>().array() > (center_mm_ + reach_mm).array()).any()) return false;
-  if ((box.hi.head<2>().array() < (center_mm_ - reach_mm).array()).any()) return false;
-  return near_line(box, center_mm_, along_, half_mm_.x()) &&
-         near_line(box, center_mm_, across_, half_mm_.y());
+      half_mm_(rectangle.half_mm.array() + kTouch_mm) {
+  const Vector2d half_mm = along_.cwiseAbs() * half_mm_.x() + across_.cwiseAbs() * half_mm_.y();
+  reach_ = {center_mm_ - half_mm, center_mm_ + half_mm};
+  along_span_mm_ = span(along_);
+  across_span_mm_ = span(across_);
 }
 
 Interval Oblong::clip(const Vector2d& a_mm, const Vector2d& b_mm) const {

@@ -14,18 +14,23 @@ namespace pinjaw::geometry {
 struct Surface::Index {
   TriangleMesh mesh;
   Box box;
-  std::vector<Facet> facets;  ///< in the order of the tree's leaves
+  std::vector<Facet> facets;       ///< in the order of the tree's leaves
+  std::vector<Box> boxes;          ///< theirs
+  std::vector<ShadowSpans> spans;  ///< theirs
   Bvh tree{{}};
 
   explicit Index(TriangleMesh source);
 
-  /// Calls leaf(facet) for facets whose boxes may meet the region and the slab [slab.lo, slab.hi]; `slab` may
-  /// shrink while the walk goes on. Stops where leaf returns true.
+  /// Calls leaf(facet) for facets that may meet the region and the slab [slab.lo, slab.hi]; `slab` may shrink
+  /// while the walk goes on. Stops where leaf returns true.
   template <class Region, class First, class Leaf>
   void visit(const Region& region, const Slab& slab, First&& first, Leaf&& leaf) const;
   [[nodiscard]] Hit hit_of(const Facet& facet, double distance_mm, const Vector3d& p_mm) const;
   template <class Region>
-  [[nodiscard]] std::pair<double, const Facet*> lowest(const Region& region, Slab slab) const;
+  [[nodiscard]] double lowest(const Region& region, Slab slab) const;
+  /// The lowest z and its facet; of facets as low the first of the mesh.
+  template <class Region>
+  [[nodiscard]] std::pair<double, const Facet*> lowest_facet(const Region& region) const;
   template <class Region>
   [[nodiscard]] double highest(const Region& region, Slab slab) const;
   template <class Region>
@@ -33,6 +38,8 @@ struct Surface::Index {
 };
 
 namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Vector3d unit_or_zero(const Vector3d& v) {
   const double length = v.norm();
@@ -55,22 +62,28 @@ constexpr auto kHigherFirst = [](const Bvh::Node& a, const Bvh::Node& b) {
 
 Surface::Index::Index(TriangleMesh source) : mesh(std::move(source)) {
   std::vector<Facet> given;
-  std::vector<Box> boxes;
+  std::vector<Box> given_boxes;
   given.reserve(mesh.triangles.size());
-  boxes.reserve(mesh.triangles.size());
+  given_boxes.reserve(mesh.triangles.size());
   for (const auto& corners : mesh.triangles) {
     Facet facet;
     for (std::size_t i = 0; i < 3; ++i)
       facet.p_mm[i] = mesh.vertices_mm[static_cast<std::size_t>(corners[i])];
     facet.normal = unit_or_zero((facet.p_mm[1] - facet.p_mm[0]).cross(facet.p_mm[2] - facet.p_mm[0]));
     facet.triangle = static_cast<int>(given.size());
-    boxes.push_back(facet.box());
-    box.include(boxes.back());
+    given_boxes.push_back(facet.box());
+    box.include(given_boxes.back());
     given.push_back(facet);
   }
-  tree = Bvh(boxes);
+  tree = Bvh(given_boxes);
   facets.reserve(given.size());
-  for (const int i : tree.order()) facets.push_back(given[static_cast<std::size_t>(i)]);
+  boxes.reserve(given.size());
+  spans.reserve(given.size());
+  for (const int i : tree.order()) {
+    facets.push_back(given[static_cast<std::size_t>(i)]);
+    boxes.push_back(given_boxes[static_cast<std::size_t>(i)]);
+    spans.emplace_back(facets.back());
+  }
 }
 
 template <class Region, class First, class Leaf>
@@ -80,9 +93,10 @@ void Surface::Index::visit(const Region& region, const Slab& slab, First&& first
   };
   tree.walk([&](const Bvh::Node& node) { return outside(node.box); }, first,
             [&](const Bvh::Node& node) {
-              for (std::int32_t i = node.first; i < node.first + node.count; ++i) {
-                const Facet& facet = facets[static_cast<std::size_t>(i)];
-                if (!outside(facet.box()) && leaf(facet)) return true;
+              const auto end = static_cast<std::size_t>(node.first + node.count);
+              for (auto i = static_cast<std::size_t>(node.first); i < end; ++i) {
+                if (outside(boxes[i]) || !region.may_meet(facets[i]) || spans[i].apart_from(region)) continue;
+                if (leaf(facets[i])) return true;
               }
               return false;
             });
@@ -94,8 +108,22 @@ Hit Surface::Index::hit_of(const Facet& facet, double distance_mm, const Vector3
 }
 
 template <class Region>
-std::pair<double, const Facet*> Surface::Index::lowest(const Region& region, Slab slab) const {
-  std::pair<double, const Facet*> best{std::numeric_limits<double>::infinity(), nullptr};
+double Surface::Index::lowest(const Region& region, Slab slab) const {
+  double best = kInfinity;
+  visit(region, slab, kLowerFirst, [&](const Facet& facet) {
+    const Interval z = within(z_range_over(facet, region), slab);
+    if (z.lo > z.hi) return false;
+    best = z.lo;
+    slab.hi_mm = std::nextafter(z.lo, -kInfinity);  // what is as low need not be looked at
+    return best <= slab.lo_mm;
+  });
+  return best;
+}
+
+template <class Region>
+std::pair<double, const Facet*> Surface::Index::lowest_facet(const Region& region) const {
+  Slab slab;
+  std::pair<double, const Facet*> best{kInfinity, nullptr};
   visit(region, slab, kLowerFirst, [&](const Facet& facet) {
     const Interval z = within(z_range_over(facet, region), slab);
     if (z.lo > z.hi || z.lo > best.first) return false;
@@ -109,14 +137,13 @@ std::pair<double, const Facet*> Surface::Index::lowest(const Region& region, Sla
 
 template <class Region>
 double Surface::Index::highest(const Region& region, Slab slab) const {
-  double best = -std::numeric_limits<double>::infinity();
-  const double ceiling_mm = slab.hi_mm;
+  double best = -kInfinity;
   visit(region, slab, kHigherFirst, [&](const Facet& facet) {
     const Interval z = within(z_range_over(facet, region), slab);
-    if (z.lo > z.hi || z.hi < best) return false;
+    if (z.lo > z.hi) return false;
     best = z.hi;
-    slab.lo_mm = z.hi;
-    return best >= ceiling_mm;
+    slab.lo_mm = std::nextafter(z.hi, kInfinity);  // what is as high need not be looked at
+    return best >= slab.hi_mm;
   });
   return best;
 }
@@ -135,7 +162,7 @@ bool Surface::Index::meets(const Region& region, const Slab& slab) const {
 Surface::Surface(TriangleMesh mesh) : index_(std::make_shared<const Index>(std::move(mesh))) {}
 
 double Surface::lowest_z_mm(const Sweep& region, const Slab& slab) const {
-  return index_->lowest(Stadium(region), slab).first;
+  return index_->lowest(Stadium(region), slab);
 }
 
 double Surface::highest_z_mm(const Sweep& region, const Slab& slab) const {
@@ -151,14 +178,14 @@ bool Surface::meets(const Rectangle& region, const Slab& slab) const {
 }
 
 std::optional<Hit> Surface::lowest_above(const Vector2d& p_mm) const {
-  const auto [z_mm, facet] = index_->lowest(Stadium({p_mm, p_mm, 0}), {});
+  const auto [z_mm, facet] = index_->lowest_facet(Stadium({p_mm, p_mm, 0}));
   if (facet == nullptr) return std::nullopt;
   return index_->hit_of(*facet, z_mm - index_->box.lo.z(), {p_mm.x(), p_mm.y(), z_mm});
 }
 
 std::optional<Hit> Surface::first_hit(const Ray& ray) const {
   const RayTest test(ray);
-  double nearest_mm = std::numeric_limits<double>::infinity();
+  double nearest_mm = kInfinity;
   const Facet* hit = nullptr;
   index_->tree.walk(
       [&](const Bvh::Node& node) {

@@ -55,23 +55,23 @@ base::Expected<model::Design, LoadingLoss> load(const PlanarFixture& fixture, st
   if (shifts.empty() || row_extent(fixture) >= kit.grid.rows) return tl::unexpected(LoadingLoss::NoShift);
   const int row_shift = centred_row_shift(kit, fixture);
   Path path(fixture, pins, kit, surroundings, options);
-  std::optional<model::Design> design;
   std::optional<LoadingLoss> least_shift_loss;
-  for (const ColumnShift& shift : shifts) {
-    const PlacedFixture placed = place(kit, fixture, shift, row_shift);
-    if (const auto loss = path.loss_at(placed)) {
-      if (!least_shift_loss) least_shift_loss = loss;
-    } else if (design) {
-      design->alternatives.push_back({shift.left, shift.right, shift.jaw_separation_mm});
-    } else {
-      design = design_of(fixture, pins, placed);
-      design->jaw_open_mm = options.motion == JawMotion::Closes
-                                ? model::open_separation_mm(kit.jaws, shift.jaw_separation_mm)
-                                : shift.jaw_separation_mm;
-    }
+  std::vector<const ColumnShift*> load;  // largest shift, and so widest opening, first
+  for (auto shift = shifts.rbegin(); shift != shifts.rend(); ++shift) {
+    least_shift_loss = path.loss_at(place(kit, fixture, *shift, row_shift));
+    if (!least_shift_loss) load.push_back(&*shift);
   }
-  if (!design) return tl::unexpected(*least_shift_loss);
-  return *std::move(design);
+  if (load.empty()) return tl::unexpected(*least_shift_loss);
+
+  const ColumnShift& least = *load.back();
+  load.pop_back();
+  model::Design design = design_of(fixture, pins, place(kit, fixture, least, row_shift));
+  design.jaw_open_mm = options.motion == JawMotion::Closes
+                           ? model::open_separation_mm(kit.jaws, least.jaw_separation_mm)
+                           : least.jaw_separation_mm;
+  for (auto other = load.rbegin(); other != load.rend(); ++other)
+    design.alternatives.push_back({(*other)->left, (*other)->right, (*other)->jaw_separation_mm});
+  return design;
 }
 
 }  // namespace pinjaw::planner

@@ -28,7 +28,7 @@ double sign_of_outwards(JawSide jaw) {
 
 Path::Path(const PlanarFixture& fixture, std::span<const PinToLoad> pins, const model::Kit& kit,
            const Surroundings& surroundings, const LoadingOptions& options)
-    : kit_(kit), surroundings_(surroundings), options_(options), blocked_mm_(kInfinity) {
+    : kit_(kit), surroundings_(surroundings), options_(options), clear_mm_(-1), blocked_mm_(kInfinity) {
   const Vector2d closing_P = geometry::direction(-fixture.theta_rad);
   for (const PinToLoad& pin : pins) {
     const PlanarPin& planar = fixture.pins[pin.pin];
@@ -48,21 +48,22 @@ std::optional<LoadingLoss> Path::loss_at(const PlacedFixture& placed) {
         (model::open_separation_mm(kit_.jaws, placed.jaw_separation_mm) - placed.jaw_separation_mm) / 2;
     if (opening_mm < kLeastOpening_mm) return LoadingLoss::NoOpening;
   }
-  if (opening_mm >= blocked_mm_ || pins_meet_part(opening_mm)) {
-    blocked_mm_ = std::min(blocked_mm_, opening_mm);
-    return LoadingLoss::PinSweep;
-  }
+  if (pins_meet_part(opening_mm)) return LoadingLoss::PinSweep;
   if (pins_meet_others(opening_mm)) return LoadingLoss::PinMeetsObstacle;
   if (plates_meet_anything(placed, opening_mm)) return LoadingLoss::PlateMeetsObstacle;
   return std::nullopt;
 }
 
-bool Path::pins_meet_part(double opening_mm) const {
-  return std::any_of(pins_.begin(), pins_.end(), [&](const Pin& pin) {
+bool Path::pins_meet_part(double opening_mm) {
+  if (opening_mm <= clear_mm_) return false;
+  if (opening_mm >= blocked_mm_) return true;
+  const bool met = std::any_of(pins_.begin(), pins_.end(), [&](const Pin& pin) {
     const Sweep sweep{pin.closed_mm, pin.closed_mm + opening_mm * pin.outwards,
                       kit_.pins.radius_mm - model::kEps_mm};
     return surroundings_.part->meets(sweep, Slab{.hi_mm = pin.top_mm});
   });
+  (met ? blocked_mm_ : clear_mm_) = opening_mm;
+  return met;
 }
 
 bool Path::pins_meet_others(double opening_mm) const {
@@ -98,10 +99,10 @@ bool Path::plates_meet_anything(const PlacedFixture& placed, double opening_mm) 
   const Slab standing{surroundings_.plate_top_mm - kit_.jaws.plate_thickness_mm, top_mm};
   const Slab coming{.hi_mm = top_mm};
   return std::any_of(jaws_.begin(), jaws_.end(), [&](JawSide jaw) {
-    const Rectangle swept = plate(placed, jaw, {0, opening_mm});
-    const Rectangle open = plate(placed, jaw, {opening_mm, opening_mm});
     const auto in_the_way = [&](const Surface& surface) {
-      return surface.meets(swept, standing) || surface.meets(open, coming);
+      if (surface.z_range_mm().lo > top_mm) return false;
+      return surface.meets(plate(placed, jaw, {0, opening_mm}), standing) ||
+             surface.meets(plate(placed, jaw, {opening_mm, opening_mm}), coming);
     };
     return in_the_way(*surroundings_.part) ||
            std::any_of(surroundings_.others.begin(), surroundings_.others.end(), in_the_way);

@@ -1,7 +1,12 @@
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <limits>
+
 #include "host/base/random.hpp"
+#include "host/geometry/facet.hpp"
 #include "host/geometry/surface.hpp"
 #include "tests/host/geometry/surface_referee.hpp"
 
@@ -60,6 +65,42 @@ TEST(SurfaceProperty, the_lowest_and_highest_z_lie_between_the_referees_brackets
       RC_ASSERT(high <= highest.outer + kRounding_mm);
       RC_ASSERT(high >= highest.inner - kRounding_mm);
       RC_ASSERT(surface.meets(region, slab) == (low <= high));
+    }
+  });
+  EXPECT_TRUE(held);
+}
+
+/// The z range over the region and within the slab by asking every facet: no tree, no spans, no early end.
+Interval every_facet(const TriangleMesh& mesh, const Sweep& region, const Slab& slab) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const Stadium stadium(region);
+  Interval all{kInfinity, -kInfinity};
+  for (const auto& corners : mesh.triangles) {
+    Facet facet;
+    for (std::size_t i = 0; i < 3; ++i)
+      facet.p_mm[i] = mesh.vertices_mm[static_cast<std::size_t>(corners[i])];
+    const Vector3d normal = (facet.p_mm[1] - facet.p_mm[0]).cross(facet.p_mm[2] - facet.p_mm[0]);
+    const double length = normal.norm();
+    if (length > 0) facet.normal = normal / length;
+    const Interval z = z_range_over(facet, stadium);
+    const Interval cut{std::max(z.lo, slab.lo_mm), std::min(z.hi, slab.hi_mm)};
+    if (cut.lo > cut.hi) continue;
+    all = {std::min(all.lo, cut.lo), std::max(all.hi, cut.hi)};
+  }
+  return all;
+}
+
+TEST(SurfaceProperty, what_is_left_out_early_changes_no_bit_of_an_answer) {
+  const bool held = rc::check("screens", [](std::uint64_t seed) {
+    base::Random random(seed);
+    const Surface surface{random_mesh(random, 1 + static_cast<int>(random.uniform(0, 60)))};
+    for (int i = 0; i < 20; ++i) {
+      const Sweep region = random_sweep(random);
+      const Slab slab = random_slab(random);
+      const Interval all = every_facet(surface.mesh(), region, slab);
+      RC_ASSERT(surface.lowest_z_mm(region, slab) == all.lo);
+      RC_ASSERT(surface.highest_z_mm(region, slab) == all.hi);
+      RC_ASSERT(surface.meets(region, slab) == (all.lo <= all.hi));
     }
   });
   EXPECT_TRUE(held);
