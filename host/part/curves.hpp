@@ -49,4 +49,13 @@ struct Wall {
   geometry::Interval z_mm;
 };
 
+/// A curve in plan that stands for edges of a mesh: a crease, or a silhouette, where a smooth face turns
+/// over. A source of features of its own.
+struct Contour {
+  int number = 0;                  ///< from 1
+  geometry::Curve curve;           ///< direction without meaning
+  double error_mm = 0;             ///< how far, in plan, the edges may lie from the curve
+  std::vector<Vector3d> trace_mm;  ///< the edges' ends, in order
+};
+
 }  // namespace pinjaw::part

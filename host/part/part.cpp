@@ -8,6 +8,7 @@
 #include "host/base/sha256.hpp"
 #include "host/part/brep.hpp"
 #include "host/part/placing.hpp"
+#include "host/part/stl_part.hpp"
 
 namespace pinjaw::part {
 namespace {
@@ -25,6 +26,10 @@ bool is_step(const std::filesystem::path& file) {
   return ending == ".step" || ending == ".stp";
 }
 
+bool is_stl(const std::filesystem::path& file) {
+  return lower_case(file.extension().string()) == ".stl";
+}
+
 base::Expected<std::vector<NamedShape>> solids_of(const model::PartSource& source, const std::string& bytes) {
   if (source.profile) {
     return prism_of(*source.profile).map([&](const Shape& shape) {
@@ -33,18 +38,20 @@ base::Expected<std::vector<NamedShape>> solids_of(const model::PartSource& sourc
   }
   if (!is_step(source.file)) {
     return base::failure(source.file.string() +
-                         ": not a part file; expected .step, .stp or a profile in .yaml");
+                         ": not a part file; expected .step, .stp, .stl or a profile in .yaml");
   }
   return read_step(bytes, source.file.string());
 }
 
-base::Expected<std::vector<NamedShape>> selected(const std::vector<NamedShape>& solids,
-                                                 const Selection& selection, const std::string& file) {
+/// Of solids with names, those that make the part.
+template <class Named>
+base::Expected<std::vector<Named>> selected(const std::vector<Named>& solids, const Selection& selection,
+                                            const std::string& file) {
   if (selection.base.empty()) return solids;
-  std::vector<NamedShape> base;
-  std::vector<NamedShape> rest;
+  std::vector<Named> base;
+  std::vector<Named> rest;
   std::string names;
-  for (const NamedShape& solid : solids) {
+  for (const Named& solid : solids) {
     const bool wanted = base.empty() && lower_case(solid.name) == lower_case(selection.base);
     (wanted ? base : rest).push_back(solid);
     names += (names.empty() ? "\"" : ", \"") + solid.name + "\"";
@@ -87,8 +94,8 @@ base::Expected<std::vector<Solid>> listed(const std::vector<NamedShape>& solids)
   return list;
 }
 
-base::Expected<Part> part_of(const model::PartSource& source, const std::vector<NamedShape>& solids,
-                             const std::vector<NamedShape>& chosen) {
+base::Expected<Part> part_of_brep(const model::PartSource& source, const std::vector<NamedShape>& solids,
+                                  const std::vector<NamedShape>& chosen) {
   const Eigen::Matrix3d rotation = upright_rotation(source.up);
   const Shape shape = compound_of(chosen);
   auto list = listed(solids);
@@ -106,18 +113,49 @@ base::Expected<Part> part_of(const model::PartSource& source, const std::vector<
   geometry::TriangleMesh mesh = rotated(std::move(meshed->mesh), rotation);
   auto walls = walls_of(*faces, rotation, mesh);
   return Part{.name = {},
-              .file = source.file,
+              .file = {},
               .sha256 = {},
               .surface = geometry::Surface(std::move(mesh)),
               .edges = std::move(edges->edges),
               .walls = std::move(walls),
+              .contours = {},
               .edge_counts = edges->counts,
               .mesh_deflection_mm = meshed->deflection_mm,
               .solids = std::move(*list),
-              .mass_kg = mass_kg(source, mass->volume_mm3),
               .volume_mm3 = mass->volume_mm3,
               .centroid_mm = rotation * mass->centroid_mm,
               .profile = profile_in_plan(source.profile, rotation)};
+}
+
+base::Expected<Part> read_brep(const model::PartSource& source, const std::string& bytes,
+                               const Selection& selection) {
+  const std::string file = source.file.string();
+  const auto solids = solids_of(source, bytes);
+  if (!solids) return tl::unexpected(solids.error());
+  const auto chosen = selected(*solids, selection, file);
+  if (!chosen) return tl::unexpected(chosen.error());
+  auto part = part_of_brep(source, *solids, *chosen);
+  if (!part) return base::failure(file + ": " + part.error().message);
+  return part;
+}
+
+base::Expected<Part> read_mesh(const model::PartSource& source, const std::string& bytes,
+                               const Selection& selection) {
+  const std::string file = source.file.string();
+  const auto solids = read_stl(bytes, file, kMostTriangles);
+  if (!solids) return tl::unexpected(solids.error());
+  const auto chosen = selected(*solids, selection, file);
+  if (!chosen) return tl::unexpected(chosen.error());
+  auto part = stl_part(*solids, *chosen, upright_rotation(source.up));
+  if (!part) return base::failure(file + ": " + part.error().message);
+  if (part->volume_mm3 <= 0 && source.density_g_cm3 && !source.mass_kg) {
+    const std::string why = part->mesh_counts->closed()
+                                ? "encloses no volume"
+                                : "has " + std::to_string(part->mesh_counts->open_edges) + " open edges";
+    return base::failure(file + ": its mesh " + why +
+                         ", so no material can tell its mass; state mass_kg instead");
+  }
+  return part;
 }
 
 }  // namespace
@@ -127,12 +165,11 @@ base::Expected<Part> read_part(const model::PartSource& source, const Selection&
   if (!(source.up.norm() > 0) || !source.up.allFinite()) return base::failure(file + ": up has no direction");
   const auto bytes = base::read_file(source.file);
   if (!bytes) return base::failure(file + ": " + bytes.error().message);
-  const auto solids = solids_of(source, *bytes);
-  if (!solids) return tl::unexpected(solids.error());
-  const auto chosen = selected(*solids, selection, file);
-  if (!chosen) return tl::unexpected(chosen.error());
-  auto part = part_of(source, *solids, *chosen);
-  if (!part) return base::failure(file + ": " + part.error().message);
+  const bool from_mesh = !source.profile && is_stl(source.file);
+  auto part = from_mesh ? read_mesh(source, *bytes, selection) : read_brep(source, *bytes, selection);
+  if (!part) return part;
+  part->file = source.file;
+  part->mass_kg = mass_kg(source, part->volume_mm3);
   part->name = name_of(source, selection);
   part->sha256 = base::sha256(*bytes);
   return part;
@@ -147,6 +184,10 @@ Part turned(const Part& part, model::Side side) {
   for (Wall& wall : result.walls) {
     wall.curve = mirrored(wall.curve, 0);
     wall.z_mm = {-wall.z_mm.hi, -wall.z_mm.lo};
+  }
+  for (Contour& contour : result.contours) {
+    contour.curve = mirrored(contour.curve, 0);
+    for (Vector3d& p : contour.trace_mm) p = rotation * p;
   }
   if (result.profile) result.profile = mirrored(*result.profile, 0);
   result.centroid_mm = rotation * part.centroid_mm;

@@ -30,6 +30,30 @@ struct EdgeCounts {
   friend bool operator==(const EdgeCounts&, const EdgeCounts&) = default;
 };
 
+/// What became of the facets of an STL file. Its shells are the connected pieces of its surface.
+struct MeshCounts {
+  int facets = 0;         ///< in the file
+  int degenerate = 0;     ///< dropped: two corners are one point
+  int repeated = 0;       ///< dropped: the same facet stands before
+  int turned = 0;         ///< corners put in the other order, so that the outside is outside
+  int shells = 0;         ///< connected pieces
+  int open_edges = 0;     ///< not as many facets on one side as on the other
+  int crowded_edges = 0;  ///< more than two facets: shells that touch along an edge
+  [[nodiscard]] bool closed() const { return open_edges == 0; }
+  friend bool operator==(const MeshCounts&, const MeshCounts&) = default;
+};
+
+/// Where the contour edges of a mesh went; edges = creases + silhouettes + upright + gentle.
+struct ContourCounts {
+  int edges = 0;        ///< of the mesh: folded, turning over, or without a neighbour
+  int creases = 0;      ///< chained and fitted
+  int silhouettes = 0;  ///< chained and fitted: a smooth face turns from down to up
+  int upright = 0;      ///< left out: a point in plan
+  int gentle = 0;       ///< left out: folded between two sides of which none is steep
+  int jagged = 0;       ///< of the silhouettes, left out: no line or arc follows them
+  friend bool operator==(const ContourCounts&, const ContourCounts&) = default;
+};
+
 /// A part in the part frame (DESIGN 2), or turned to its gripper by `turned`. Lengths in mm, mass in kg.
 struct Part {
   std::string name;  ///< the profile's, or the selected base's, else the file's stem
@@ -38,7 +62,10 @@ struct Part {
   geometry::Surface surface;
   std::vector<EdgeCurve> edges;
   std::vector<Wall> walls;
+  std::vector<Contour> contours;
   EdgeCounts edge_counts;
+  std::optional<MeshCounts> mesh_counts{};  ///< of an STL file, which has contours instead of edges and walls
+  ContourCounts contour_counts{};
   double mesh_deflection_mm =
       0;  ///< chord error of `surface`: kMeshDeflectionMm unless the part is too large for it
   std::vector<Solid> solids;  ///< all solids of the file, in the file's order

@@ -9,6 +9,9 @@ namespace pinjaw::part {
 
 using Eigen::Matrix3d;
 
+/// Sine of the lean below which a plane, cylinder or facet counts as upright: 0.01 mm over a 10 mm wall.
+inline constexpr double kUprightSine = 1e-3;
+
 Curve3 rotated(const Curve3& curve, const Matrix3d& rotation);
 geometry::TriangleMesh rotated(geometry::TriangleMesh mesh, const Matrix3d& rotation);
 

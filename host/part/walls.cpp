@@ -8,8 +8,6 @@
 namespace pinjaw::part {
 namespace {
 
-/// Sine of the lean below which a plane or cylinder counts as upright: 0.01 mm over a 10 mm wall.
-constexpr double kUprightSine = 1e-3;
 /// Meshed circles have points at most this far apart; a wider gap is where the cylinder ends.
 constexpr double kGapRad = 0.6;
 

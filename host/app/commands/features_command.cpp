@@ -20,19 +20,39 @@ struct Options {
   std::string output;
 };
 
-std::vector<std::pair<std::string, int>> counts_of(const planner::FeatureCounts& counts,
-                                                   const part::EdgeCounts& edges) {
-  return {{"edges", edges.total},
-          {"left_out_seams", edges.seams},
-          {"left_out_degenerate", edges.degenerate},
-          {"candidates", counts.candidates},
-          {"left_out_upright", counts.left_out_upright},
-          {"left_out_tilted", counts.left_out_tilted},
-          {"left_out_freeform", counts.left_out_freeform},
-          {"edgelets", counts.edgelets},
-          {"visible", counts.visible},
-          {"features", counts.features},
-          {"reachable", counts.reachable}};
+using Counts = std::vector<std::pair<std::string, int>>;
+
+/// What was read: the edges of a STEP file, or the facets of a mesh.
+Counts read_counts(const part::Part& part) {
+  if (!part.mesh_counts) {
+    return {{"edges", part.edge_counts.total},
+            {"left_out_seams", part.edge_counts.seams},
+            {"left_out_degenerate", part.edge_counts.degenerate}};
+  }
+  const part::MeshCounts& mesh = *part.mesh_counts;
+  return {{"facets", mesh.facets},
+          {"dropped_degenerate", mesh.degenerate},
+          {"dropped_repeated", mesh.repeated},
+          {"turned", mesh.turned},
+          {"shells", mesh.shells},
+          {"open_edges", mesh.open_edges},
+          {"crowded_edges", mesh.crowded_edges},
+          {"edges", part.contour_counts.edges},
+          {"left_out_gentle", part.contour_counts.gentle},
+          {"left_out_jagged", part.contour_counts.jagged}};
+}
+
+Counts counts_of(const planner::FeatureCounts& counts, const part::Part& part) {
+  Counts all = read_counts(part);
+  all.insert(all.end(), {{"candidates", counts.candidates},
+                         {"left_out_upright", counts.left_out_upright},
+                         {"left_out_tilted", counts.left_out_tilted},
+                         {"left_out_freeform", counts.left_out_freeform},
+                         {"edgelets", counts.edgelets},
+                         {"visible", counts.visible},
+                         {"features", counts.features},
+                         {"reachable", counts.reachable}});
+  return all;
 }
 
 bool is_known_ending(const std::string& output) {
@@ -51,7 +71,7 @@ void run_features(Context& context, const Options& options) {
   if (!scene) return context.fail(ExitCode::BadFile, scene.error().message);
 
   const planner::Features found = planner::find_features(scene->turned, task->kit.pins);
-  const auto counts = counts_of(found.counts, scene->part.edge_counts);
+  const auto counts = counts_of(found.counts, scene->part);
   const bool drawing = options.output.ends_with(".svg");
   const std::string document = planner::features_json(task->name, found.features, counts);
   std::string bytes = document;

@@ -15,6 +15,8 @@ struct FeatureCounts {
   int left_out_upright = 0;   ///< project to a point
   int left_out_tilted = 0;    ///< ellipses that do not project to circular arcs
   int left_out_freeform = 0;  ///< neither line nor circle nor ellipse
+  int left_out_gentle = 0;    ///< of a mesh: folded between two sides of which none is steep
+  int left_out_jagged = 0;    ///< of a mesh: silhouettes that no line or arc follows
   int edgelets = 0;           ///< pieces between intersections, duplicates once
   int visible = 0;            ///< edgelets with some length that jumps by the engagement
   int too_short = 0;          ///< joined stretches shorter than eps, left out

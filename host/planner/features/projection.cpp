@@ -96,6 +96,12 @@ Projection projected(const part::Part& part, FeatureCounts& counts) {
     if (geometry::length_mm(wall.curve) >= kPointMm)
       result.curves.push_back({wall.curve, wall.face, true, false});
   }
+  for (const part::Contour& contour : part.contours) {
+    result.curves.push_back({contour.curve, contour.number, false, true});
+  }
+  counts.left_out_upright += part.contour_counts.upright;
+  counts.left_out_gentle = part.contour_counts.gentle;
+  counts.left_out_jagged = part.contour_counts.jagged;
   counts.candidates = static_cast<int>(result.curves.size());
   return result;
 }

@@ -23,6 +23,8 @@ void count_features(const FeatureCounts& counts, Losses& losses) {
   of_phase["upright edge"] = counts.left_out_upright;
   of_phase["tilted curve"] = counts.left_out_tilted;
   of_phase["freeform curve"] = counts.left_out_freeform;
+  of_phase["gentle fold of a mesh"] = counts.left_out_gentle;
+  of_phase["jagged silhouette of a mesh"] = counts.left_out_jagged;
   of_phase["no room for a pin"] = counts.features - counts.reachable;
 }
 

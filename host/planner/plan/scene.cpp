@@ -43,6 +43,7 @@ base::Expected<Scene> read_scene(const model::Task& task) {
   if (task.attached) {
     model::PartSource source = task.part;
     source.file = task.attached->file;
+    source.density_g_cm3.reset();  // only its shape is asked for, and an open mesh has no mass
     const auto rest = read(source, {.base = task.attached->base, .rest = true});
     if (!rest) return tl::unexpected(rest.error());
     scene.attached.push_back(turned_surface(*rest, rest->surface, task.side));

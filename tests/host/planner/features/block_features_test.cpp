@@ -139,6 +139,7 @@ TEST(BlockFeatures, fade_where_a_sloping_ceiling_comes_under_the_engagement) {
                         .surface = geometry::Surface(mesh),
                         .edges = {{.edge = 1, .curve = part::Line3{{0, 0, 0}, {30, 0, 0}}, .faces = {1}}},
                         .walls = {},
+                        .contours = {},
                         .edge_counts = {},
                         .solids = {},
                         .profile = {}};

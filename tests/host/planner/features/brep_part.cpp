@@ -68,6 +68,7 @@ part::Part part_of(const part::Shape& shape, const Eigen::Matrix3d& rotation) {
           .surface = geometry::Surface(std::move(mesh)),
           .edges = std::move(edges.edges),
           .walls = std::move(walls),
+          .contours = {},
           .edge_counts = edges.counts,
           .solids = {},
           .volume_mm3 = mass.volume_mm3,
