@@ -143,7 +143,7 @@ void judge_foot(const Task& task, const Stand& stand, const Pin& pin, Rules& rul
   const double n_x = (turn * track.outward(q_mm)).x();
   rules.keep((side(pin) == 0 ? -n_x : n_x) - 1e-6, 1e-8);
   const double along_mm = track.nearest(q_mm) * track.feature_per_track();
-  rules.keep(room_in_reach_mm(feature, along_mm, track.closed()) + 1e-7, kHair_mm);
+  rules.keep(room_in_reach_mm(feature, along_mm, track.closed()) + 1e-7, task.reach_hair_mm);
   if (task.outline != nullptr) {
     rules.keep(outline_distance_mm(*task.outline, q_mm) - task.kit.pins.radius_mm + 1e-6, 2e-7);
   }
@@ -180,7 +180,10 @@ void judge_plates(const Task& task, const Stand& told, Rules& rules) {
 }  // namespace
 
 Task task_of(std::vector<model::Feature> features, const model::Kit& kit, const model::Profile* outline) {
-  Task task{std::move(features), kit, outline, {}};
+  Task task;
+  task.features = std::move(features);
+  task.kit = kit;
+  task.outline = outline;
   for (const model::Feature& feature : task.features) task.tracks.emplace_back(feature, kit.pins.radius_mm);
   return task;
 }

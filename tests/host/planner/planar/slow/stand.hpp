@@ -17,6 +17,7 @@ struct Task {
   model::Kit kit;
   const model::Profile* outline = nullptr;  ///< nothing on a CAD part
   std::vector<Track> tracks;                ///< one a feature
+  double reach_hair_mm = 1e-8;              ///< how well the ends of the features' reach are known
 };
 Task task_of(std::vector<model::Feature> features, const model::Kit& kit, const model::Profile* outline);
 
