@@ -13,6 +13,7 @@ namespace {
 using Suite = std::pair<const char*, void (*)(pinjaw::bench::Report&)>;
 constexpr Suite kSuites[] = {
     {"squeeze", pinjaw::bench::measure_squeeze},
+    {"planar", pinjaw::bench::measure_planar},
 };
 
 int usage(const std::string& wrong) {

@@ -6,5 +6,6 @@
 namespace pinjaw::bench {
 
 void measure_squeeze(Report& report);
+void measure_planar(Report& report);
 
 }  // namespace pinjaw::bench
