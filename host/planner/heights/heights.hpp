@@ -62,8 +62,8 @@ double plate_top_mm(const model::Kit& kit, const geometry::Surface& part,
                     std::span<const geometry::Surface> attached = {});
 
 /// Finds pin heights on one part (DESIGN 3 phase 3; 3.1 nos 1, 2, 7, 8). A height depends on the foot alone,
-/// so each foot is worked out once, at its place rounded to 1e-7 mm, and remembered. May be used from many
-/// threads; answers do not depend on their order.
+/// so each foot is worked out at its place rounded to 1e-7 mm, and the last few hundred thousand are
+/// remembered. May be used from many threads; answers do not depend on their order.
 class Heights {
  public:
   /// `part` is the base part's surface, turned by the task's side; `plate_top_mm` as by plate_top_mm().

@@ -2,9 +2,9 @@
 
 #include <tbb/parallel_for.h>
 
-#include <atomic>
+#include <algorithm>
 #include <mutex>
-#include <optional>
+#include <span>
 #include <variant>
 
 #include "host/planner/features/features.hpp"
@@ -28,32 +28,8 @@ void count_features(const FeatureCounts& counts, Losses& losses) {
   of_phase["no room for a pin"] = counts.features - counts.reachable;
 }
 
-/// Gives each count to the caller's sink from one thread at a time.
-class Counter {
- public:
-  Counter(const ProgressSink& sink, std::string phase, std::int64_t total)
-      : sink_(sink), phase_(std::move(phase)), total_(total) {
-    tell(0);
-  }
-  void add_one() {
-    const std::int64_t done = ++done_;
-    constexpr std::int64_t kEvery = 64;
-    if (done % kEvery == 0 || done == total_) tell(done);
-  }
-
- private:
-  void tell(std::int64_t done) {
-    if (!sink_) return;
-    const std::scoped_lock lock(mutex_);
-    sink_({phase_, done, total_});
-  }
-
-  const ProgressSink& sink_;
-  std::string phase_;
-  std::int64_t total_;
-  std::atomic<std::int64_t> done_ = 0;
-  std::mutex mutex_;
-};
+/// Fixtures that are held as designs at once: enough to keep all threads busy between two meetings.
+constexpr std::size_t kBatch = 4096;
 
 Outcome design_of(const PlanarFixture& fixture, const Heights& heights, const model::Kit& kit,
                   const Surroundings& surroundings, const LoadingOptions& options) {
@@ -69,36 +45,69 @@ Outcome design_of(const PlanarFixture& fixture, const Heights& heights, const mo
   return *design;
 }
 
-std::vector<Outcome> stand_and_load(const std::vector<PlanarFixture>& fixtures, const model::Kit& kit,
-                                    const Scene& scene, const PlanOptions& options,
-                                    const ProgressSink& progress) {
-  std::vector<geometry::Surface> others = scene.attached;
-  others.insert(others.end(), scene.obstacles.begin(), scene.obstacles.end());
-  const double plate_top = plate_top_mm(kit, scene.turned.surface, scene.attached);
-  const Surroundings surroundings{&scene.turned.surface, others, plate_top};
-  const LoadingOptions loading{options.loading_2d ? SweepHeights::Infinite : SweepHeights::Pins,
-                               JawMotion::Closes};
-  const Heights heights(scene.turned.surface, kit.pins, plate_top);
+/// Phases 3 and 4 on some fixtures at a time.
+class Stands {
+ public:
+  Stands(const model::Kit& kit, const Scene& scene, bool loading_2d)
+      : kit_(kit),
+        others_(others_of(scene)),
+        plate_top_mm_(plate_top_mm(kit, scene.turned.surface, scene.attached)),
+        surroundings_{&scene.turned.surface, others_, plate_top_mm_},
+        loading_{loading_2d ? SweepHeights::Infinite : SweepHeights::Pins, JawMotion::Closes},
+        heights_(scene.turned.surface, kit.pins, plate_top_mm_) {}
 
-  std::vector<Outcome> outcomes(fixtures.size(), HeightLoss::NoEngagement);
-  Counter counter(progress, "heights", static_cast<std::int64_t>(fixtures.size()));
-  tbb::parallel_for(std::size_t{0}, fixtures.size(), [&](std::size_t i) {
-    if (options.stop.stop_requested()) return;
-    outcomes[i] = design_of(fixtures[i], heights, kit, surroundings, loading);
-    counter.add_one();
-  });
-  return outcomes;
+  [[nodiscard]] std::vector<Outcome> outcomes(std::span<const PlanarFixture> fixtures) const {
+    std::vector<Outcome> outcomes(fixtures.size(), HeightLoss::NoEngagement);
+    tbb::parallel_for(std::size_t{0}, fixtures.size(), [&](std::size_t i) {
+      outcomes[i] = design_of(fixtures[i], heights_, kit_, surroundings_, loading_);
+    });
+    return outcomes;
+  }
+
+ private:
+  static std::vector<geometry::Surface> others_of(const Scene& scene) {
+    std::vector<geometry::Surface> others = scene.attached;
+    others.insert(others.end(), scene.obstacles.begin(), scene.obstacles.end());
+    return others;
+  }
+
+  const model::Kit& kit_;
+  std::vector<geometry::Surface> others_;
+  double plate_top_mm_;
+  Surroundings surroundings_;
+  LoadingOptions loading_;
+  Heights heights_;
+};
+
+/// Counts the outcomes, and keeps those that load.
+std::vector<model::Design> loadable(std::vector<Outcome> outcomes, CandidateCounts& counts) {
+  std::vector<model::Design> designs;
+  for (Outcome& outcome : outcomes) {
+    if (const auto* height = std::get_if<HeightLoss>(&outcome)) {
+      ++counts.losses["heights"][std::string(to_string(*height))];
+      continue;
+    }
+    ++counts.funnel.heights;
+    if (const auto* loading = std::get_if<LoadingLoss>(&outcome)) {
+      ++counts.losses["loading"][std::string(to_string(*loading))];
+      continue;
+    }
+    ++counts.funnel.loadable;
+    designs.push_back(std::move(std::get<model::Design>(outcome)));
+  }
+  return designs;
 }
 
 }  // namespace
 
-base::Expected<Candidates> find_candidates(const model::Task& task, const Scene& scene,
-                                           const PlanOptions& options, const ProgressSink& progress) {
-  Candidates candidates;
+base::Expected<CandidateCounts> find_candidates(const model::Task& task, const Scene& scene,
+                                                const PlanOptions& options, const ProgressSink& progress,
+                                                const CandidateSink& take) {
+  CandidateCounts counts;
   if (progress) progress({"features", 0, 0});
   const Features features = find_features(scene.turned, task.kit.pins);
-  candidates.funnel.features = static_cast<std::int64_t>(features.features.size());
-  count_features(features.counts, candidates.losses);
+  counts.funnel.features = static_cast<std::int64_t>(features.features.size());
+  count_features(features.counts, counts.losses);
 
   constexpr std::int64_t kParts = 1000;
   PlanarOptions planar;
@@ -114,23 +123,18 @@ base::Expected<Candidates> find_candidates(const model::Task& task, const Scene&
     };
   }
   const PlanarResult found = plan_planar_fixtures(features.features, task.kit, planar);
-  candidates.funnel.planar = static_cast<std::int64_t>(found.fixtures.size());
+  const std::span<const PlanarFixture> fixtures(found.fixtures);
+  counts.funnel.planar = static_cast<std::int64_t>(fixtures.size());
 
-  for (Outcome& outcome : stand_and_load(found.fixtures, task.kit, scene, options, progress)) {
-    if (const auto* height = std::get_if<HeightLoss>(&outcome)) {
-      ++candidates.losses["heights"][std::string(to_string(*height))];
-      continue;
-    }
-    ++candidates.funnel.heights;
-    if (const auto* loading = std::get_if<LoadingLoss>(&outcome)) {
-      ++candidates.losses["loading"][std::string(to_string(*loading))];
-      continue;
-    }
-    ++candidates.funnel.loadable;
-    candidates.designs.push_back(std::move(std::get<model::Design>(outcome)));
+  const Stands stands(task.kit, scene, options.loading_2d);
+  for (std::size_t done = 0; done < fixtures.size() && !options.stop.stop_requested(); done += kBatch) {
+    if (progress)
+      progress({"designs", static_cast<std::int64_t>(done), static_cast<std::int64_t>(fixtures.size())});
+    take(loadable(stands.outcomes(fixtures.subspan(done, std::min(kBatch, fixtures.size() - done))), counts));
   }
   if (options.stop.stop_requested()) return base::failure("the plan was stopped before its end");
-  return candidates;
+  if (progress) progress({"designs", counts.funnel.planar, counts.funnel.planar});
+  return counts;
 }
 
 }  // namespace pinjaw::planner

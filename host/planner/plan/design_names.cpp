@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <set>
 #include <string>
 
 #include "host/base/sha256.hpp"
@@ -23,13 +22,16 @@ std::string id_of(const model::Design& design, std::string_view kind) {
 
 }  // namespace
 
+std::string DesignNames::next(const model::Design& design) {
+  constexpr int kHexadecimal = 16;
+  std::string id = id_of(design, kind_);
+  const int count = ++given_[static_cast<std::uint32_t>(std::stoul(id, nullptr, kHexadecimal))];
+  return count == 1 ? id : fmt::format("{}-{}", id, count);
+}
+
 void name_designs(std::vector<model::Design>& designs, std::string_view kind) {
-  std::set<std::string> taken;
-  for (model::Design& design : designs) {
-    const std::string id = id_of(design, kind);
-    design.id = id;
-    for (int again = 2; !taken.insert(design.id).second; ++again) design.id = fmt::format("{}-{}", id, again);
-  }
+  DesignNames names(kind);
+  for (model::Design& design : designs) design.id = names.next(design);
 }
 
 }  // namespace pinjaw::planner

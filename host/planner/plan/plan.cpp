@@ -3,7 +3,10 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <map>
 #include <optional>
+#include <span>
+#include <tuple>
 
 #include "host/base/random.hpp"
 #include "host/planner/force/force.hpp"
@@ -28,38 +31,83 @@ base::Expected<Loads> loads_of(const model::Task& task, const Scene& scene) {
   return loads;
 }
 
-/// Sorts the verdicts into the plan: the designs that hold, and the counts of those that do not.
-void judge(std::vector<model::Design> designs, const std::vector<ForceVerdict>& verdicts, Plan& plan) {
-  auto& losses = plan.losses["force"];
-  for (std::size_t i = 0; i < designs.size(); ++i) {
-    const ForceVerdict& verdict = verdicts[i];
+/// Smallest squeeze first; no two designs are equal.
+bool before(const model::Design& a, const model::Design& b) {
+  return std::tie(a.squeeze.required_n, a.id) < std::tie(b.squeeze.required_n, b.id);
+}
+
+/// Phase 5: takes designs as they come, counts them all, and keeps the best.
+class Ranking {
+ public:
+  /// `top` as in PlanOptions; all references outlive it.
+  Ranking(Plan& plan, std::span<const model::Wrench> wrenches, const PlanOptions& options)
+      : plan_(plan),
+        wrenches_(wrenches),
+        options_(options),
+        force_{options.friction, plan.kit.actuator.usable_squeeze_n(), {}},
+        losses_(plan.losses["force"]),
+        names_("gripper") {}
+
+  void take(std::vector<model::Design> designs) {
+    std::vector<Grasp> grasps;
+    grasps.reserve(designs.size());
+    for (const model::Design& design : designs) grasps.push_back(grasp_of(design, plan_.friction));
+    const auto verdicts = evaluate_all(grasps, wrenches_, force_, options_.threads);
+    for (std::size_t i = 0; i < designs.size(); ++i) judge(std::move(designs[i]), verdicts[i]);
+    if (options_.top > 0 && plan_.designs.size() >= 2 * options_.top + kSpare) cut();
+  }
+
+  /// Sorts what was kept.
+  void finish() {
+    cut();
+    std::ranges::sort(plan_.designs, before);
+  }
+
+ private:
+  static constexpr std::size_t kSpare = 1000;  ///< chosen: cut seldom
+
+  void judge(model::Design design, const ForceVerdict& verdict) {
     if (std::holds_alternative<Jams>(verdict)) {
-      ++losses["jams"];
-      continue;
+      ++losses_["jams"];
+      return;
     }
     if (std::holds_alternative<Wedges>(verdict)) {
-      ++losses["wedges"];
-      continue;
+      ++losses_["wedges"];
+      return;
     }
-    ++plan.funnel.not_wedging;
+    ++plan_.funnel.not_wedging;
     if (std::holds_alternative<NotResistable>(verdict)) {
-      ++losses["no squeeze resists every disturbance"];
-      continue;
+      ++losses_["no squeeze resists every disturbance"];
+      return;
     }
-    ++plan.funnel.resistable;
+    ++plan_.funnel.resistable;
     if (std::holds_alternative<TooStrong>(verdict)) {
-      ++losses["needs more than the usable force"];
-      continue;
+      ++losses_["needs more than the usable force"];
+      return;
     }
-    ++plan.funnel.strong;
+    ++plan_.funnel.strong;
     const auto& holds = std::get<Holds>(verdict);
-    const double usable_n = plan.kit.actuator.usable_squeeze_n();
-    designs[i].squeeze = {holds.required_n, usable_n, plan.kit.actuator.max_squeeze_n,
-                          usable_n - holds.required_n,
-                          plan.disturbances.empty() ? "none" : plan.disturbances[holds.critical].name};
-    plan.designs.push_back(std::move(designs[i]));
+    design.id = names_.next(design);
+    design.squeeze = {holds.required_n, force_.usable_n, plan_.kit.actuator.max_squeeze_n,
+                      force_.usable_n - holds.required_n,
+                      plan_.disturbances.empty() ? "none" : plan_.disturbances[holds.critical].name};
+    plan_.designs.push_back(std::move(design));
   }
-}
+
+  void cut() {
+    auto& kept = plan_.designs;
+    if (options_.top == 0 || kept.size() <= options_.top) return;
+    std::ranges::nth_element(kept, kept.begin() + static_cast<std::ptrdiff_t>(options_.top), before);
+    kept.resize(options_.top);
+  }
+
+  Plan& plan_;
+  std::span<const model::Wrench> wrenches_;
+  const PlanOptions& options_;
+  ForceOptions force_;
+  std::map<std::string, std::int64_t>& losses_;
+  DesignNames names_;
+};
 
 }  // namespace
 
@@ -85,9 +133,6 @@ base::Expected<Plan> make_plan(const model::Task& task, const Scene& scene, cons
   }
   auto loads = loads_of(task, scene);
   if (!loads) return tl::unexpected(loads.error());
-  auto candidates = find_candidates(task, scene, options, progress);
-  if (!candidates) return tl::unexpected(candidates.error());
-
   Plan plan;
   plan.task = task.name;
   plan.part = {task.part.file.string(), scene.part.sha256, task.part.up, scene.part.mass_kg,
@@ -101,21 +146,17 @@ base::Expected<Plan> make_plan(const model::Task& task, const Scene& scene, cons
   plan.friction_model = options.friction;
   plan.random_algorithm = base::Random::kAlgorithm;
   plan.disturbances = std::move(loads->disturbances);
-  plan.funnel = candidates->funnel;
-  plan.losses = std::move(candidates->losses);
 
-  name_designs(candidates->designs, "gripper");
-  std::vector<Grasp> grasps;
-  grasps.reserve(candidates->designs.size());
-  for (const model::Design& design : candidates->designs) grasps.push_back(grasp_of(design, task.friction));
-  if (progress) progress({"force", 0, static_cast<std::int64_t>(grasps.size())});
-  const ForceOptions force{options.friction, task.kit.actuator.usable_squeeze_n(), {}};
-  judge(std::move(candidates->designs), evaluate_all(grasps, loads->wrenches, force, options.threads), plan);
-
-  std::ranges::sort(plan.designs, [](const model::Design& a, const model::Design& b) {
-    return std::tie(a.squeeze.required_n, a.id) < std::tie(b.squeeze.required_n, b.id);
-  });
-  if (options.top > 0 && plan.designs.size() > options.top) plan.designs.resize(options.top);
+  Ranking ranking(plan, loads->wrenches, options);
+  auto counts = find_candidates(task, scene, options, progress,
+                                [&](std::vector<model::Design> some) { ranking.take(std::move(some)); });
+  if (!counts) return tl::unexpected(counts.error());
+  ranking.finish();
+  plan.funnel.features = counts->funnel.features;
+  plan.funnel.planar = counts->funnel.planar;
+  plan.funnel.heights = counts->funnel.heights;
+  plan.funnel.loadable = counts->funnel.loadable;
+  plan.losses.merge(counts->losses);
   return plan;
 }
 

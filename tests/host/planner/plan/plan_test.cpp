@@ -53,7 +53,7 @@ TEST(Plan, lists_the_smallest_squeeze_first_and_no_design_twice) {
 }
 
 TEST(Plan, that_is_stopped_in_any_phase_says_so_and_gives_no_half_an_answer) {
-  for (const std::string phase : {"planar", "heights"}) {
+  for (const std::string phase : {"planar", "designs"}) {
     std::stop_source stop;
     const auto at = [&](const Progress& progress) {
       if (progress.phase == phase) stop.request_stop();
