@@ -217,6 +217,7 @@ std::vector<Fit> best_way(Run chain, const std::vector<std::size_t>& early,
       }
       if (best) here.push_back(*best);
     }
+    if (here.empty()) return {};
     steps.push_back(std::move(here));
   }
   std::vector<Fit> way;
@@ -235,7 +236,10 @@ std::vector<Fit> open_way(const std::vector<Vector2d>& chain, const FitLimits& l
   auto early = greedy_breaks(backwards, limits);
   std::ranges::reverse(early);
   for (std::size_t& place : early) place = chain.size() - 1 - place;
-  if (early.size() < late.size()) return best_way(chain, early, early, limits);
+  if (early.size() < late.size()) {
+    // A run may fit backwards and, by rounding, not forwards; then the longer way stands.
+    if (auto way = best_way(chain, early, early, limits); !way.empty()) return way;
+  }
   const bool nested = early.size() == late.size() && std::ranges::equal(early, late, std::less_equal<>());
   return best_way(chain, nested ? early : late, late, limits);
 }

@@ -289,6 +289,23 @@ TEST(ChainFit, finds_random_chains_again_from_both_ends) {
   }
 }
 
+TEST(ChainFit, covers_any_chain_though_its_noise_is_as_large_as_the_tolerance) {
+  base::Random random(17);
+  for (int round = 0; round < 2000; ++round) {
+    Chain chain;
+    const double ripple_mm = random.uniform(0, 3e-3);
+    const auto count = 3 + random.bits() % 40;
+    for (std::uint64_t i = 0; i < count; ++i) {
+      const double t_rad = 0.15 * static_cast<double>(i);
+      chain.emplace_back(8 * std::cos(t_rad) + random.uniform(-ripple_mm, ripple_mm),
+                         5 * std::sin(t_rad) + random.uniform(-ripple_mm, ripple_mm));
+    }
+    const bool closed = round % 2 == 0;
+    expect_true(fitted_pieces(chain, closed, kLimits), chain, closed);
+    if (HasFailure()) FAIL() << "in round " << round;
+  }
+}
+
 TEST(ChainFit, follows_a_freeform_chain_within_its_tolerance_with_few_arcs) {
   Chain chain;
   for (int i = 0; i <= 400; ++i) {
