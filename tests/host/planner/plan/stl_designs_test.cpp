@@ -79,7 +79,7 @@ Sound as_stl(const Prism& of, double deflection_mm) {
 }
 
 void expect_same_designs(const Sound& a, const Sound& b) {
-  EXPECT_EQ(a.candidates.funnel.features, b.candidates.funnel.features);
+  EXPECT_EQ(a.counts.funnel.features, b.counts.funnel.features);
   const Share share = share_of(a, b);
   EXPECT_GT(share.designs, 20U);
   EXPECT_EQ(share.matched, share.designs);
@@ -101,11 +101,11 @@ TEST(StlDesigns, of_prisms_are_those_of_step_however_coarse_the_mesh) {
 TEST(StlDesigns, have_pins_of_the_same_height_touching_at_the_same_heights) {
   const Prism made = prism(bitten_plate());
   const Sound stl = as_stl(made, 0.05);
-  const auto& designs = made.step.candidates.designs;
-  const auto found = matches(designs, stl.candidates.designs);
+  const auto& designs = made.step.designs;
+  const auto found = matches(designs, stl.designs);
   for (std::size_t i = 0; i < found.size(); ++i) {
     if (found[i] < 0) continue;  // counted above
-    const model::Design& other = stl.candidates.designs[static_cast<std::size_t>(found[i])];
+    const model::Design& other = stl.designs[static_cast<std::size_t>(found[i])];
     for (std::size_t pin = 0; pin < 4; ++pin) {
       EXPECT_NEAR(designs[i].pins[pin].length_mm, other.pins[pin].length_mm, 1e-4);
       EXPECT_NEAR(designs[i].pins[pin].contact_z_mm.lo, other.pins[pin].contact_z_mm.lo, 1e-4);

@@ -26,9 +26,8 @@ void print_row(const std::string& part, const std::string& mesh, const Sound& st
                ? 100.0
                : 100.0 * static_cast<double>(share.matched) / static_cast<double>(share.designs);
   };
-  fmt::print("| {} | {} | {} | {} | {} | {:.1f} | {} | {:.1f} |\n", part, mesh,
-             step.candidates.funnel.features, stl.candidates.funnel.features, there.designs, percent(there),
-             back.designs, percent(back));
+  fmt::print("| {} | {} | {} | {} | {} | {:.1f} | {} | {:.1f} |\n", part, mesh, step.counts.funnel.features,
+             stl.counts.funnel.features, there.designs, percent(there), back.designs, percent(back));
   for (const auto& [why, count] : there.lacking) fmt::print("    STL lacks {:6}: {}\n", count, why);
   for (const auto& [why, count] : back.lacking) fmt::print("    STEP lacks {:5}: {}\n", count, why);
   std::fflush(stdout);

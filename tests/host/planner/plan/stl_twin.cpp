@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <numbers>
 #include <optional>
 #include <sstream>
@@ -207,9 +208,12 @@ Sound sound_designs(const std::string& file, const model::Kit& kit) {
   task.friction = 0.3;
   auto scene = read_scene(task);
   if (!scene) throw std::runtime_error(scene.error().message);
-  auto candidates = find_candidates(task, *scene, {.top = 0}, {});
-  if (!candidates) throw std::runtime_error(candidates.error().message);
-  return {std::move(task), std::move(*scene), std::move(*candidates)};
+  std::vector<model::Design> designs;
+  auto counts = find_candidates(task, *scene, {.top = 0}, {}, [&](std::vector<model::Design> more) {
+    std::ranges::move(more, std::back_inserter(designs));
+  });
+  if (!counts) throw std::runtime_error(counts.error().message);
+  return {std::move(task), std::move(*scene), std::move(*counts), std::move(designs)};
 }
 
 std::vector<int> matches(const std::vector<model::Design>& a, const std::vector<model::Design>& b,
@@ -238,7 +242,7 @@ std::vector<int> matches(const std::vector<model::Design>& a, const std::vector<
 }
 
 Share share_of(const Sound& in, const Sound& other) {
-  const auto found = matches(in.candidates.designs, other.candidates.designs);
+  const auto found = matches(in.designs, other.designs);
   Share share{.designs = found.size(), .matched = 0, .lacking = {}};
   std::optional<Lacking> lacking;
   for (std::size_t i = 0; i < found.size(); ++i) {
@@ -247,7 +251,7 @@ Share share_of(const Sound& in, const Sound& other) {
       continue;
     }
     if (!lacking) lacking.emplace(other);
-    ++share.lacking[lacking->why(in.candidates.designs[i])];
+    ++share.lacking[lacking->why(in.designs[i])];
   }
   return share;
 }

@@ -23,7 +23,8 @@ part::Shape shape_in(const std::string& file);
 struct Sound {
   model::Task task;
   Scene scene;
-  Candidates candidates;
+  CandidateCounts counts;
+  std::vector<model::Design> designs;
 };
 Sound sound_designs(const std::string& file, const model::Kit& kit);
 
