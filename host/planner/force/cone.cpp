@@ -55,7 +55,7 @@ ConeProgram::Entering ConeProgram::price(const Vector6& y, Phase phase) const {
     if (phase == Phase::Squeeze) slack += contact.closing;
     const double along_t = slack.dot(contact.tangent);
     const double along_z = slack.z();
-    const double slip = std::hypot(along_t, along_z);
+    const double slip = std::sqrt(along_t * along_t + along_z * along_z);
     const double reduced = slack.dot(contact.normal) - mu_ * slip;
     if (reduced < 0)
       best.shrink = std::min(best.shrink, contact.least_share / (contact.least_share - reduced));

@@ -13,8 +13,8 @@ __extension__ using Real = __float128;
 using Real = long double;
 #endif
 
-using kernel::kColumns;
 using kernel::kRows;
+constexpr int kColumns = 4 * Grasp::kMaxContacts;
 constexpr int kWidth = kColumns + kRows;  // real columns, then one artificial a row
 constexpr double kFeasible = 1e-10;       // of |b|, the kernel's primal tolerance
 // Columns have length about 1 and rounding of 1e-16. A column that gains less than 1e-13 a newton is not
@@ -32,11 +32,11 @@ Real magnitude(Real value) {
 /// Rows kept in the form x_basis + T x_others = right, the right-hand side at least 0.
 class Tableau {
  public:
-  Tableau(const kernel::Program& program, int columns, const std::array<double, kRows>& b)
-      : columns_(columns) {
+  Tableau(const RayProgram& program, const RightHandSide& b)
+      : columns_(static_cast<int>(program.cost.size())) {
     for (int k = 0; k < kRows; ++k) {
       const double sign = b[at(k)] < 0 ? -1 : 1;
-      for (int j = 0; j < columns; ++j) rows_[at(k)][at(j)] = sign * program.a[k][j];
+      for (int j = 0; j < columns_; ++j) rows_[at(k)][at(j)] = sign * program.columns[at(j)][at(k)];
       rows_[at(k)][at(kColumns + k)] = 1;
       right_[at(k)] = sign * b[at(k)];
       basis_[at(k)] = kColumns + k;
@@ -44,7 +44,7 @@ class Tableau {
     }
   }
 
-  TableauOutcome solve(const kernel::Program& program) {
+  TableauOutcome solve(const RayProgram& program) {
     std::array<Real, kWidth> cost{};
     std::fill(cost.begin() + kColumns, cost.end(), Real{1});
     run(cost, columns_);
@@ -54,7 +54,7 @@ class Tableau {
     drive_out_artificials();
     artificials_block_ = false;
     cost.fill(0);
-    for (int j = 0; j < columns_; ++j) cost[at(j)] = program.cost[j];
+    for (int j = 0; j < columns_; ++j) cost[at(j)] = program.cost[at(j)];
     if (!run(cost, columns_)) return Unbounded{};
     TableauOptimum optimum;
     Real value = 0;
@@ -144,9 +144,8 @@ class Tableau {
 
 }  // namespace
 
-TableauOutcome solve_in_quadruple_precision(const kernel::Program& program, int columns,
-                                            const std::array<double, kRows>& b) {
-  return Tableau(program, columns, b).solve(program);
+TableauOutcome solve_in_quadruple_precision(const RayProgram& program, const RightHandSide& b) {
+  return Tableau(program, b).solve(program);
 }
 
 }  // namespace pinjaw::planner

@@ -38,29 +38,43 @@ ForceVerdict verdict_of(const Worst& worst, const ForceOptions& options) {
   return Holds{worst.required_n, worst.critical};
 }
 
-ForceVerdict evaluate_pyramid(SqueezeSolver& solver, std::span<const model::Wrench> wrenches,
-                              const ForceOptions& options, std::vector<double>& forces_n) {
-  forces_n.clear();
-  for (std::size_t i = 0; i < wrenches.size(); ++i) {
-    if (options.stop_above_n) {
-      const double bound_n = solver.lower_bound_n(wrenches[i]);
-      if (bound_n > *options.stop_above_n) return TooStrong{bound_n, i};
-    }
-    const double force = force_n(solver.least_squeeze(wrenches[i]));
-    if (std::isinf(force)) return NotResistable{i};
-    if (options.stop_above_n && force > *options.stop_above_n) return TooStrong{force, i};
-    forces_n.push_back(force);
+/// A solver and its scratch memory, one a thread.
+struct Worker {
+  SqueezeSolver solver;
+  std::vector<SqueezeOutcome> outcomes;
+  std::vector<double> forces_n;
+
+  /// Appends the pyramid's forces to forces_n.
+  void solve(std::span<const model::Wrench> wrenches) {
+    solver.least_squeeze_all(wrenches, outcomes);
+    for (const SqueezeOutcome& outcome : outcomes) forces_n.push_back(force_n(outcome));
   }
-  return verdict_of(worst_of(forces_n), options);
+};
+
+ForceVerdict evaluate_pyramid(Worker& worker, std::span<const model::Wrench> wrenches,
+                              const ForceOptions& options) {
+  constexpr std::size_t kBlock = 32;  // chosen: where evaluation may stop early it looks this often
+  const std::size_t block = options.stop_above_n ? kBlock : std::max<std::size_t>(1, wrenches.size());
+  worker.forces_n.clear();
+  for (std::size_t from = 0; from < wrenches.size(); from += block) {
+    worker.solve(wrenches.subspan(from, std::min(block, wrenches.size() - from)));
+    for (std::size_t i = from; i < worker.forces_n.size(); ++i) {
+      const double force = worker.forces_n[i];
+      if (std::isinf(force)) return NotResistable{i};
+      if (options.stop_above_n && force > *options.stop_above_n) return TooStrong{force, i};
+    }
+  }
+  return verdict_of(worst_of(worker.forces_n), options);
 }
 
 /// F_max over the exact cone. The inscribed pyramid needs at least as much, so wrenches are taken in the
 /// order of its answer, and the rest are skipped once it needs no more than the worst cone found. Loads the
 /// pyramid cannot resist come first, in the list's order.
-ForceVerdict evaluate_cone(SqueezeSolver& solver, std::span<const model::Wrench> wrenches,
-                           const ForceOptions& options, std::vector<double>& forces_n) {
-  forces_n.clear();
-  for (const model::Wrench& wrench : wrenches) forces_n.push_back(force_n(solver.least_squeeze(wrench)));
+ForceVerdict evaluate_cone(Worker& worker, std::span<const model::Wrench> wrenches,
+                           const ForceOptions& options) {
+  worker.forces_n.clear();
+  worker.solve(wrenches);
+  const std::vector<double>& forces_n = worker.forces_n;
   std::vector<std::size_t> order(wrenches.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),
@@ -69,7 +83,7 @@ ForceVerdict evaluate_cone(SqueezeSolver& solver, std::span<const model::Wrench>
   double worst_n = 0;
   for (const std::size_t i : order) {
     if (forces_n[i] <= worst_n * (1 - kEqual)) break;
-    cone_n[i] = force_n(solver.least_squeeze(wrenches[i], model::FrictionModel::Cone));
+    cone_n[i] = force_n(worker.solver.least_squeeze(wrenches[i], model::FrictionModel::Cone));
     if (std::isinf(cone_n[i])) return NotResistable{i};
     worst_n = std::max(worst_n, cone_n[i]);
     if (options.stop_above_n && worst_n > *options.stop_above_n) return TooStrong{worst_n, i};
@@ -77,27 +91,21 @@ ForceVerdict evaluate_cone(SqueezeSolver& solver, std::span<const model::Wrench>
   return verdict_of(worst_of(cone_n), options);
 }
 
-/// A solver and its scratch memory, one a thread.
-struct Worker {
-  SqueezeSolver solver;
-  std::vector<double> forces_n;
-
-  ForceVerdict verdict(const Grasp& grasp, std::span<const model::Wrench> wrenches,
-                       const ForceOptions& options) {
-    if (const auto jaw = wedging_jaw(grasp)) return Wedges{*jaw};
-    if (const auto contact = jamming_contact(grasp)) return Jams{contact->pin};
-    solver.take(grasp);
-    return options.friction == model::FrictionModel::Cone
-               ? evaluate_cone(solver, wrenches, options, forces_n)
-               : evaluate_pyramid(solver, wrenches, options, forces_n);
-  }
-};
+ForceVerdict verdict(Worker& worker, const Grasp& grasp, std::span<const model::Wrench> wrenches,
+                     const ForceOptions& options) {
+  if (const auto jaw = wedging_jaw(grasp)) return Wedges{*jaw};
+  if (const auto contact = jamming_contact(grasp)) return Jams{contact->pin};
+  worker.solver.take(grasp);
+  return options.friction == model::FrictionModel::Cone ? evaluate_cone(worker, wrenches, options)
+                                                        : evaluate_pyramid(worker, wrenches, options);
+}
 
 }  // namespace
 
 ForceVerdict evaluate(const Grasp& grasp, std::span<const model::Wrench> wrenches,
                       const ForceOptions& options) {
-  return Worker().verdict(grasp, wrenches, options);
+  Worker worker;
+  return verdict(worker, grasp, wrenches, options);
 }
 
 std::vector<ForceVerdict> evaluate_all(std::span<const Grasp> grasps, std::span<const model::Wrench> wrenches,
@@ -107,7 +115,7 @@ std::vector<ForceVerdict> evaluate_all(std::span<const Grasp> grasps, std::span<
   tbb::enumerable_thread_specific<Worker> workers;
   arena.execute([&] {
     tbb::parallel_for(std::size_t{0}, grasps.size(), [&](std::size_t i) {
-      verdicts[i] = workers.local().verdict(grasps[i], wrenches, options);
+      verdicts[i] = verdict(workers.local(), grasps[i], wrenches, options);
     });
   });
   return verdicts;

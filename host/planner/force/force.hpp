@@ -39,7 +39,7 @@ struct NotResistable {
 
 /// Needs more than the usable force.
 struct TooStrong {
-  double required_n = 0;  ///< F_max, or a lower bound where evaluation stopped early
+  double required_n = 0;  ///< F_max, or less where evaluation stopped early
   std::size_t critical = 0;
 };
 

@@ -4,7 +4,8 @@ namespace pinjaw::planner::kernel {
 
 void forget(Memory& memory) {
   memory.vertices = 0;
-  memory.bases = 0;
+  memory.answers = 0;
+  for (std::int16_t& place : memory.place) place = -1;
 }
 
 const Kernel* const* kernels(int& count) {

@@ -1,72 +1,113 @@
 #pragma once
 
-/// The inner loop of the squeeze linear program: min c'x, A x = b, x >= 0 with 6 rows and at most 32 columns,
-/// for one A and c and many b. Plain arrays and no library, so that it can be compiled for several
-/// instruction sets in one program.
+#include <cstdint>
+
+/// The inner loop of the squeeze linear program: min c'x, A x = b, x >= 0 with 6 rows, for one A and c and
+/// many b. Plain arrays and no library, so that it can be compiled for several instruction sets in one
+/// program.
 ///
-/// Only b changes, so a dual vertex y (A'y <= c) found for one load is a valid lower bound y.b for every
-/// other; each vertex keeps the bases it was met with, for it has many (the two points of a pin share their
-/// vertical wrench).
+/// Only b changes, so every b asks for a vertex of one polytope, {y : A'y <= c}: the one with the largest
+/// y.b. The kernel walks along that polytope's edges, from the best vertex it knows, and remembers each
+/// vertex and where each of its edges leads; after a few dozen loads a load is a look-up and one product.
+///
+/// Edges of a pyramid come in pairs that differ by a vertical force, and all contacts one above the other (a
+/// pin's two points) share that vertical force. Where such a pin sticks, both of each pair are tight and a
+/// vertex has many bases of 6 columns. So a basis here holds plan rays, each the sum of a pair, and for each
+/// sticking pin its vertical force Z, |Z| <= h S, S the sum of its plan rays: one basis for one vertex. What
+/// must be at least 0 at an optimum then are the plan rays and, for each sticking pin, up = (S + Z/h)/2 and
+/// down = (S - Z/h)/2: at most 8 linear functions of b, one a lane (two pins at most can stick with two plan
+/// rays each, 3 of the 6 dimensions).
 namespace pinjaw::planner::kernel {
 
 inline constexpr int kRows = 6;
-inline constexpr int kLanes = 8;     ///< rows padded with zeros
-inline constexpr int kColumns = 32;  ///< 8 contacts of 4 rays, padded with zero columns of cost 1
+inline constexpr int kLanes = 8;
+inline constexpr int kPlanRays = 16;  ///< 8 contacts of 2
+inline constexpr int kRays =
+    2 * kPlanRays;  ///< ray j of the plan with the vertical force up, then 16 + j down
+inline constexpr int kMaxPins = 8;
 inline constexpr int kMaxVertices =
-    256;  ///< chosen: 302 loads visit some 52 (measured: 52 to 121); past it nothing more is kept
-inline constexpr int kMaxBases = 512;
+    1024;  ///< chosen: 302 loads visit some 60 (see the bench); past it all is forgotten
+
+/// Where a program's columns lie in Program::column, after the 32 rays.
+inline constexpr int kMiddle = kRays;                   ///< + plan ray: without vertical force
+inline constexpr int kUpwards = kMiddle + kPlanRays;    ///< + pin: the vertical force h
+inline constexpr int kDownwards = kUpwards + kMaxPins;  ///< + pin: its opposite
+inline constexpr int kUnit = kDownwards + kMaxPins;     ///< + row: a unit vector
+inline constexpr int kNothing = kUnit + kRows;          ///< zeros
+inline constexpr int kColumns = kNothing + 1;
 
 /// A and c of one grasp. Every cost is above 0, so that y = 0 is dual feasible.
 struct alignas(64) Program {
-  double a[kRows][kColumns];    ///< rows of A
-  double at[kColumns][kLanes];  ///< columns of A
-  double cost[kColumns];
+  double plan[kRows - 1][kPlanRays];  ///< plan rays without their vertical force, which is 0
+  double lift[3][kPlanRays];  ///< h times the vertical force's rows 2, 3 and 4, at each plan ray's pin
+  double cost[kPlanRays];     ///< the same for both rays of a pair; 1 where there is no ray
+  double column[kColumns][kLanes];
   double least_cost;
+  std::uint32_t rays_of_pin[kMaxPins];  ///< bit j: plan ray j
+  std::uint8_t pin_of_ray[kPlanRays];
 };
 
-/// A basis B of columns of A, or logicals (-1) where A has no full rank.
-struct alignas(64) Basis {
-  double inverse[kRows][kLanes];  ///< columns of B^-1, rows in lanes
-  double y[kLanes];               ///< dual point c_B B^-1
-  double y_sum;                   ///< sum of |y|
-  double inverse_error;           ///< largest entry of |B B^-1 - I|
-  double dual_excess;             ///< largest violation of A'y <= c, and of equality on the basis
-  int column[kLanes];             ///< of A, or -1 for a logical
-  int next;                       ///< next basis of the same vertex, -1 at the end
-  bool has_logical;
+/// What a lane of a vertex stands for.
+namespace lane {
+inline constexpr int kUp = 16;       ///< + pin; below: the plan ray
+inline constexpr int kDown = 24;     ///< + pin
+inline constexpr int kLogical = 32;  ///< + row: not a ray at all, must be 0
+inline constexpr int kNone = 255;
+}  // namespace lane
+
+/// One of the above for each of the 8 lanes, in a byte each.
+using Lanes = std::uint64_t;
+inline int lane_of(Lanes lanes, int i) {
+  return static_cast<int>((lanes >> (8 * i)) & 0xff);
+}
+
+/// A vertex of the dual polytope.
+struct alignas(64) Vertex {
+  double inverse[kRows][kLanes];  ///< column k: what a unit load along k adds to each lane
+  double reduced_cost[kRays];     ///< c - A'y, at least 0
+  double length2[kLanes];         ///< squared length of each lane's row of `inverse`; 1 where a lane is empty
+  double per_length2[kLanes];     ///< its reciprocal
+  double y[kRows];
+  double y_sum;          ///< sum of |y|
+  double inverse_error;  ///< largest entry of |B B^-1 - I|; below 0: not looked at yet
+  double dual_excess;    ///< largest violation of A'y <= c, and of equality on the basis
+  std::uint32_t tight;   ///< bit j: ray j is in the basis
+  Lanes lanes;
+  std::int16_t next[kLanes];  ///< the vertex at the other end of a lane's edge
+  std::uint8_t logical;       ///< bit i: lane i is a logical
 };
+inline constexpr std::int16_t kUnknown = -1;  ///< not walked yet, or not safely
+inline constexpr std::int16_t kEndless =
+    -2;  ///< the edge has no end: a load for which this lane is below 0 is infeasible
 
 /// What has been learnt of one program.
 struct alignas(64) Memory {
-  double y[kRows][kMaxVertices];  ///< vertices; lanes past the last repeat it
-  int first[kMaxVertices];        ///< basis list of each vertex
+  double y[kMaxVertices][kLanes];     ///< the vertices that were an answer
+  std::int16_t answer[kMaxVertices];  ///< which these are
+  int answers;
+  Vertex vertex[kMaxVertices];
+  std::int16_t place[2 * kMaxVertices];  ///< hash of `tight` to vertex, -1: none
   int vertices;
-  int bases;
-  Basis basis[kMaxBases];
-  Basis last;  ///< the last basis found that is not kept
 };
 
-enum class Status {
+enum class Status : std::uint8_t {
   Optimal,
   Infeasible,
   Doubtful,  ///< not certified: solve with more digits
 };
 
 struct Answer {
+  double value = 0;  ///< y.b
   Status status = Status::Doubtful;
-  double value = 0;              ///< y.b
-  const Basis* basis = nullptr;  ///< where Optimal; in the memory
-  double x[kLanes] = {};         ///< B^-1 b
-  int pivots = 0;
+  const Vertex* vertex = nullptr;  ///< where Optimal; in the memory, until the next solve()
 };
 
 /// One instruction set's kernel.
 struct Kernel {
   const char* name;
-  /// Solves for the right-hand side b[kRows]; updates the memory.
-  void (*solve)(const Program&, Memory&, const double* b, Answer&);
-  /// The largest y.b over the vertices known: a lower bound; 0 with none.
-  double (*lower_bound)(const Memory&, const double* b);
+  /// Solves for `count` right-hand sides; updates the memory. Entry k of the i-th is b[k * stride + i]; `b`
+  /// is aligned to 64 bytes, `stride` a multiple of 8, and entries past the last of a row finite.
+  void (*solve)(const Program&, Memory&, const double* b, int stride, int count, Answer*);
 };
 
 void forget(Memory& memory);

@@ -1,442 +1,239 @@
 // The kernel, compiled once for each instruction set: define PINJAW_KERNEL, then include. Everything here has
-// internal linkage and no library header is used, so no code of a wide instruction set can leak into the rest
-// of the program.
+// internal linkage and no library header but the compiler's own intrinsics is used, so no code of a wide
+// instruction set can leak into the rest of the program.
 
 #include "host/planner/force/kernel.hpp"
+#include "host/planner/force/kernel_octet.hpp"
+// after kernel_octet.hpp
+#include "host/planner/force/kernel_edge.hpp"
+// after kernel_edge.hpp
+#include "host/planner/force/kernel_certificate.hpp"
 
 namespace pinjaw::planner::kernel {
 namespace {
 
-#if defined(__AVX512F__)
-constexpr int kWidth = 8;
-#elif defined(__AVX2__)
-constexpr int kWidth = 4;
-#else
-constexpr int kWidth = 2;
-#endif
-using Pack = double __attribute__((vector_size(kWidth * sizeof(double))));
-constexpr int kLanePacks = kLanes / kWidth;
-constexpr int kColumnPacks = kColumns / kWidth;
+constexpr double kPrimalTolerance = 1e-10;  // of |b|; measured: 1e-12 and 1e-13 change nothing
+constexpr double kFarkasDepth =
+    1e-9;                       // of a unit step and |b|: how clearly an infeasible load must lie outside
+constexpr int kMaxSteps = 100;  // an ordinary walk takes 1 or 2
 
-constexpr double kInfinity = __builtin_inf();
-// Chosen by comparison with quadruple precision (measured: 1e-12 and 1e-13 change nothing; pivots of 1e-11 do
-// harm).
-constexpr double kPrimalTolerance = 1e-10;  // of |b|
-constexpr double kPivotTolerance = 1e-9;    // of |rho|
-constexpr double kTieRelative = 1e-10;
-constexpr double kTieAbsolute = 1e-12;
-constexpr double kSameVertex = 1e-9;       // of |y|
-constexpr double kCertifiedError = 1e-10;  // of max(1, |F|)
-constexpr double kFarkasExcess = 1e-12;    // of |rho|: a ray may point this far to the wrong side
-constexpr double kFarkasDepth = 1e-9;      // of |rho| |b|: how clearly the load must lie outside
-constexpr int kMaxPivots = 100;            // an ordinary cold start needs about 12
-
-inline double larger(double a, double b) {
-  return a > b ? a : b;
-}
-inline double magnitude(double a) {
-  return a < 0 ? -a : a;
-}
-inline double root(double a) {
-  return __builtin_sqrt(a);
-}
-
-inline Pack load(const double* from) {
-  return *reinterpret_cast<const Pack*>(from);
-}
-inline void store(double* to, Pack value) {
-  *reinterpret_cast<Pack*>(to) = value;
-}
-
-/// The state of one dual simplex run.
-struct alignas(64) Run {
-  double inverse[kRows][kLanes];
-  double x[kLanes];
-  double d[kColumns];      // reduced costs
-  double alpha[kColumns];  // pivot row
-  double rho[kLanes];      // row of the inverse that leaves, its sign turned so that x < 0
-  int column[kLanes];
-  double rho_length;
+/// A right-hand side.
+struct Load {
+  Octet b[kRows];
+  double size;       // largest |b|
+  double tolerance;  // of x
 };
 
-/// out = sum over k of matrix[k][.] v[k], one pack after the other.
-template <int kPacks, int kStride>
-inline void combine(const double (&matrix)[kRows][kStride], const double* v, double* out) {
-  for (int p = 0; p < kPacks; ++p) {
-    Pack sum = load(&matrix[0][p * kWidth]) * v[0];
-    for (int k = 1; k < kRows; ++k) sum += load(&matrix[k][p * kWidth]) * v[k];
-    store(&out[p * kWidth], sum);
-  }
-}
+/// Right-hand sides side by side.
+struct Loads {
+  const double* b;
+  int stride;
 
-inline double dot_rows(const double* a, const double* b) {
-  double sum = a[0] * b[0];
-  for (int k = 1; k < kRows; ++k) sum += a[k] * b[k];
-  return sum;
-}
-
-inline double largest_magnitude(const double* v) {
-  double largest = 0;
-  for (int k = 0; k < kRows; ++k) largest = larger(largest, magnitude(v[k]));
-  return largest;
-}
-
-/// How far x is from feasible: its most negative entry, or the largest |x| of a logical. 0 or above.
-inline double infeasibility(const double* x, const int* column, bool has_logical) {
-  double worst = 0;
-  for (int i = 0; i < kRows; ++i) worst = larger(worst, -x[i]);
-  if (has_logical) {
-    for (int i = 0; i < kRows; ++i) worst = larger(worst, column[i] < 0 ? magnitude(x[i]) : 0);
-  }
-  return worst;
-}
-
-struct Best {
-  double value;
-  int vertex;
+  [[nodiscard]] double at(int row, int i) const { return b[row * stride + i]; }
 };
 
-/// The vertex with the largest y.b, the first among equals.
-inline Best best_vertex(const Memory& memory, const double* b) {
-  Best best{0, -1};
-  Pack top = Pack{} - kInfinity;
-  Pack where = Pack{};
-  for (int v = 0; v < memory.vertices; v += kWidth) {
-    Pack value = load(&memory.y[0][v]) * b[0];
-    for (int k = 1; k < kRows; ++k) value += load(&memory.y[k][v]) * b[k];
-    const auto higher = value > top;
-    top = higher ? value : top;
-    where = higher ? Pack{} + static_cast<double>(v / kWidth) : where;
-  }
-  best.value = -kInfinity;
-  for (int lane = 0; lane < kWidth; ++lane) {
-    const int vertex = static_cast<int>(where[lane]) * kWidth + lane;
-    if (top[lane] > best.value || (top[lane] == best.value && vertex < best.vertex))
-      best = {top[lane], vertex};
-  }
-  if (best.vertex >= memory.vertices) best.vertex = memory.vertices - 1;
-  return best;
-}
-
-inline void start_cold(const Program& program, const double* b, Run& run) {
+inline Load load_of(const Loads& loads, int i) {
+  Load of;
+  of.size = 0;
   for (int k = 0; k < kRows; ++k) {
-    for (int i = 0; i < kLanes; ++i) run.inverse[k][i] = k == i ? 1 : 0;
+    of.b[k] = all(loads.at(k, i));
+    of.size = larger(of.size, magnitude(loads.at(k, i)));
   }
-  for (int i = 0; i < kLanes; ++i) {
-    run.x[i] = i < kRows ? b[i] : 0;
-    run.column[i] = -1;
-  }
-  for (int j = 0; j < kColumns; ++j) run.d[j] = program.cost[j];
+  of.tolerance = kPrimalTolerance * of.size;
+  return of;
 }
 
-inline void start_from(const Program& program, const Basis& basis, const double* b, Run& run) {
-  for (int k = 0; k < kRows; ++k) {
-    for (int i = 0; i < kLanes; ++i) run.inverse[k][i] = basis.inverse[k][i];
+/// For each of eight loads the place of the vertex with the largest y.b among those that were an answer, the
+/// first among equals; 0 with none.
+inline Octet best_answers(const Memory& memory, const Octet (&b)[kRows]) {
+  Octet best = all(-__builtin_inf());
+  Octet best_place = all(0);
+  for (int place = 0; place < memory.answers; ++place) {
+    const double* y = memory.y[place];
+    Octet value = b[0] * all(y[0]);
+    for (int k = 1; k < kRows; ++k) value = value + b[k] * all(y[k]);
+    const Mask higher = below(best, value);
+    best = choose(higher, value, best);
+    best_place = choose(higher, all(place), best_place);
   }
-  for (int i = 0; i < kLanes; ++i) run.column[i] = basis.column[i];
-  combine<kLanePacks>(run.inverse, b, run.x);
-  combine<kColumnPacks>(program.a, basis.y, run.d);
-  for (int p = 0; p < kColumnPacks; ++p) {
-    const Pack d = load(&program.cost[p * kWidth]) - load(&run.d[p * kWidth]);
-    store(&run.d[p * kWidth], d < 0.0 ? Pack{} : d);
-  }
+  return best_place;
 }
 
-/// The row that leaves: the deepest by exact steepest edge, -1 where x is feasible.
-inline int leaving_row(const Run& run, double tolerance) {
-  alignas(64) double length2[kLanes];
-  for (int p = 0; p < kLanePacks; ++p) {
-    Pack sum = load(&run.inverse[0][p * kWidth]) * load(&run.inverse[0][p * kWidth]);
-    for (int k = 1; k < kRows; ++k)
-      sum += load(&run.inverse[k][p * kWidth]) * load(&run.inverse[k][p * kWidth]);
-    store(&length2[p * kWidth], sum);
-  }
-  int row = -1;
-  double depth = 0;
-  for (int i = 0; i < kRows; ++i) {
-    const double below = run.column[i] < 0 ? magnitude(run.x[i]) : -run.x[i];
-    if (below <= tolerance) continue;
-    const double here = below * below / length2[i];
-    if (here > depth) {
-      depth = here;
-      row = i;
-    }
-  }
-  return row;
+/// Lists a vertex for best_answers().
+inline void list(Memory& memory, int vertex) {
+  const int place = memory.answers++;
+  memory.answer[place] = static_cast<std::int16_t>(vertex);
+  for (int k = 0; k < kRows; ++k) memory.y[place][k] = memory.vertex[vertex].y[k];
 }
 
-/// Fills rho and alpha for a row, turned so that the entering column has alpha < 0.
-inline void pivot_row(const Program& program, int row, double sign, Run& run) {
-  double length2 = 0;
-  for (int k = 0; k < kRows; ++k) {
-    run.rho[k] = sign * run.inverse[k][row];
-    length2 += run.rho[k] * run.rho[k];
-  }
-  run.rho_length = root(length2);
-  combine<kColumnPacks>(program.a, run.rho, run.alpha);
+inline unsigned slot_of(std::uint32_t tight) {
+  constexpr int kSlotBits = 11;
+  static_assert(1 << kSlotBits == 2 * kMaxVertices);
+  return (tight * 2654435769U) >> (32 - kSlotBits);  // Knuth's multiplicative hash
 }
 
-/// Dual ratio test: the column whose reduced cost reaches 0 first, among near ties the largest pivot; -1:
-/// none.
-inline int entering_column(const Run& run) {
-  const double pivot = -kPivotTolerance * run.rho_length;
-  alignas(64) double ratio[kColumns];
-  Pack least = Pack{} + kInfinity;
-  for (int p = 0; p < kColumnPacks; ++p) {
-    const Pack alpha = load(&run.alpha[p * kWidth]);
-    const auto can = alpha < pivot;
-    const Pack quotient = load(&run.d[p * kWidth]) / (can ? -alpha : Pack{} + 1.0);
-    const Pack here = can ? quotient : Pack{} + kInfinity;
-    least = here < least ? here : least;
-    store(&ratio[p * kWidth], here);
-  }
-  double step = kInfinity;
-  for (int lane = 0; lane < kWidth; ++lane) step = least[lane] < step ? least[lane] : step;
-  if (step == kInfinity) return -1;
-  const double limit = step * (1 + kTieRelative) + kTieAbsolute;
-  int column = -1;
-  double deepest = 0;
-  for (int j = 0; j < kColumns; ++j) {
-    if (ratio[j] <= limit && run.alpha[j] < deepest) {
-      deepest = run.alpha[j];
-      column = j;
-    }
-  }
-  return column;
-}
-
-/// Exchanges the basis column of `row` for column `entering`; `sign` as in pivot_row.
-inline void exchange(const Program& program, int row, double sign, int entering, Run& run) {
-  const double step = run.d[entering] / -run.alpha[entering];
-  for (int p = 0; p < kColumnPacks; ++p) {
-    const Pack d = load(&run.d[p * kWidth]) + load(&run.alpha[p * kWidth]) * step;
-    store(&run.d[p * kWidth], d < 0.0 ? Pack{} : d);
-  }
-  alignas(64) double w[kLanes];
-  combine<kLanePacks>(run.inverse, program.at[entering], w);
-  const double pivot = w[row];
-  w[row] -= 1;
-  const double x_step = run.x[row] / pivot;
-  for (int p = 0; p < kLanePacks; ++p) {
-    const Pack column = load(&w[p * kWidth]);
-    for (int k = 0; k < kRows; ++k) {
-      double* to = &run.inverse[k][p * kWidth];
-      store(to, load(to) - column * (sign * run.rho[k] / pivot));
-    }
-    store(&run.x[p * kWidth], load(&run.x[p * kWidth]) - column * x_step);
-  }
-  run.column[row] = entering;
-}
-
-/// Farkas' certificate: rho.a >= 0 for every ray while rho.b < 0, each with room for rounding.
-inline bool proves_infeasible(const Run& run, const double* b) {
-  double worst = 0;
-  for (int j = 0; j < kColumns; ++j) worst = larger(worst, -run.alpha[j]);
-  const double depth = -dot_rows(run.rho, b);
-  return worst <= kFarkasExcess * run.rho_length &&
-         depth >= kFarkasDepth * run.rho_length * largest_magnitude(b);
-}
-
-/// Takes logicals that lie at 0 out of the basis where a column can stand in; x stays, y stays dual feasible.
-inline void drive_out_logicals(const Program& program, Run& run) {
-  for (int row = 0; row < kRows; ++row) {
-    if (run.column[row] >= 0) continue;
-    for (double sign = 1; sign >= -1; sign -= 2) {
-      pivot_row(program, row, sign, run);
-      const int entering = entering_column(run);
-      if (entering < 0) continue;
-      exchange(program, row, sign, entering, run);
-      break;
-    }
-  }
-}
-
-inline Status dual_simplex(const Program& program, const double* b, double tolerance, Run& run, int& pivots) {
-  for (pivots = 0; pivots < kMaxPivots; ++pivots) {
-    const int row = leaving_row(run, tolerance);
-    if (row < 0) {
-      drive_out_logicals(program, run);
-      return Status::Optimal;
-    }
-    const double sign = run.x[row] > 0 ? -1.0 : 1.0;
-    pivot_row(program, row, sign, run);
-    const int entering = entering_column(run);
-    if (entering < 0) return proves_infeasible(run, b) ? Status::Infeasible : Status::Doubtful;
-    exchange(program, row, sign, entering, run);
-  }
-  return Status::Doubtful;
-}
-
-/// product[k] = column k of B M, where M's columns are given and B's come from the program.
-inline void times_basis(const Program& program, const int* column, const double (&m)[kRows][kLanes],
-                        double (&product)[kRows][kLanes]) {
-  alignas(64) double logical[kRows][kLanes] = {};
-  const double* of[kRows];
-  for (int i = 0; i < kRows; ++i) {
-    logical[i][i] = 1;
-    of[i] = column[i] < 0 ? logical[i] : program.at[column[i]];
-  }
-  for (int k = 0; k < kRows; ++k) {
-    for (int p = 0; p < kLanePacks; ++p) {
-      Pack sum = load(&of[0][p * kWidth]) * m[k][0];
-      for (int i = 1; i < kRows; ++i) sum += load(&of[i][p * kWidth]) * m[k][i];
-      store(&product[k][p * kWidth], sum);
-    }
-  }
-}
-
-/// One Newton-Schulz step inverse (2 I - B inverse), then y and the basis's own error bounds.
-inline void settle(const Program& program, const Run& run, Basis& basis) {
-  basis.has_logical = false;
-  for (int i = 0; i < kLanes; ++i) {
-    basis.column[i] = i < kRows ? run.column[i] : -1;
-    if (i < kRows && run.column[i] < 0) basis.has_logical = true;
-  }
-  alignas(64) double residual[kRows][kLanes];
-  times_basis(program, basis.column, run.inverse, residual);
-  for (int k = 0; k < kRows; ++k) {
-    for (int i = 0; i < kRows; ++i) residual[k][i] = (i == k ? 2.0 : 0.0) - residual[k][i];
-  }
-  for (int k = 0; k < kRows; ++k) combine<kLanePacks>(run.inverse, residual[k], basis.inverse[k]);
-  times_basis(program, basis.column, basis.inverse, residual);
-  basis.inverse_error = 0;
-  basis.y_sum = 0;
-  for (int k = 0; k < kRows; ++k) {
-    basis.y[k] = 0;
-    for (int i = 0; i < kRows; ++i) {
-      const double cost = basis.column[i] < 0 ? 0.0 : program.cost[basis.column[i]];
-      basis.y[k] += cost * basis.inverse[k][i];
-      basis.inverse_error = larger(basis.inverse_error, magnitude(residual[k][i] - (i == k ? 1.0 : 0.0)));
-    }
-    basis.y_sum += magnitude(basis.y[k]);
-  }
-  basis.y[6] = basis.y[7] = 0;
-  alignas(64) double used[kColumns];
-  combine<kColumnPacks>(program.a, basis.y, used);
-  basis.dual_excess = 0;
-  for (int j = 0; j < kColumns; ++j) basis.dual_excess = larger(basis.dual_excess, used[j] - program.cost[j]);
-  for (int i = 0; i < kRows; ++i) {
-    const int j = basis.column[i];
-    if (j >= 0) basis.dual_excess = larger(basis.dual_excess, program.cost[j] - used[j]);
-  }
-}
-
-/// The bound on |y.b - F|: what x's negative part, the inverse's error and y's excess can change. With
-/// sum x <= F / least cost. NaN counts as doubtful.
-inline bool certified(const Program& program, const Basis& basis, double below, double size, double value) {
-  const double error = basis.y_sum * kRows * (below + basis.inverse_error * size) +
-                       basis.dual_excess * (magnitude(value) + 1) / program.least_cost;
-  return error <= kCertifiedError * larger(1, magnitude(value));
-}
-
-inline bool same_vertex(const Memory& memory, int vertex, const Basis& basis) {
-  double difference = 0;
-  for (int k = 0; k < kRows; ++k)
-    difference = larger(difference, magnitude(memory.y[k][vertex] - basis.y[k]));
-  return difference <= kSameVertex * basis.y_sum;
-}
-
-/// The vertex that `basis` belongs to, among those whose bound ties with its value; -1: a new one.
-inline int vertex_of(const Memory& memory, const Basis& basis) {
-  for (int v = 0; v < memory.vertices; ++v) {
-    if (same_vertex(memory, v, basis)) return v;
+/// The vertex known by its tight rays; -1: none. `slot` is where it belongs.
+inline int known_vertex(const Memory& memory, std::uint32_t tight, unsigned& slot) {
+  slot = slot_of(tight);
+  while (memory.place[slot] >= 0) {
+    if (memory.vertex[memory.place[slot]].tight == tight) return memory.place[slot];
+    slot = (slot + 1) % (2 * kMaxVertices);
   }
   return -1;
 }
 
-/// Keeps a basis, in its vertex's list or as a new vertex; returns where it lives.
-inline const Basis* keep(Memory& memory, const Basis& basis) {
-  const int known = vertex_of(memory, basis);
-  if (memory.bases == kMaxBases || (known < 0 && memory.vertices == kMaxVertices)) return &memory.last;
-  const int place = memory.bases++;
-  memory.basis[place] = basis;
-  if (known >= 0) {
-    memory.basis[place].next = memory.first[known];
-    memory.first[known] = place;
-    return &memory.basis[place];
-  }
+/// Keeps the vertex that was written at place `memory.vertices`.
+inline int keep(Memory& memory, unsigned slot) {
   const int vertex = memory.vertices++;
-  memory.basis[place].next = -1;
-  memory.first[vertex] = place;
-  const int padded = (vertex / kLanes + 1) * kLanes;
+  memory.place[slot] = static_cast<std::int16_t>(vertex);
+  return vertex;
+}
+
+/// The first vertex: from y = 0, the load's own rows give way to rays one by one. Where the rays have no full
+/// rank, logicals remain.
+inline int first_vertex(const Program& program, Memory& memory, const Loads& loads, int load) {
+  Vertex scratch[2];
+  Vertex* at = &scratch[0];
+  at->lanes = 0;
   for (int k = 0; k < kRows; ++k) {
-    for (int v = vertex; v < padded; ++v) memory.y[k][v] = basis.y[k];
+    for (int i = 0; i < kLanes; ++i) at->inverse[k][i] = k == i ? 1 : 0;
+    at->y[k] = 0;
   }
-  return &memory.basis[place];
+  for (int i = 0; i < kLanes; ++i) {
+    at->length2[i] = at->per_length2[i] = 1;
+    put(at->lanes, i, i < kRows ? lane::kLogical + i : lane::kNone);
+    at->next[i] = kUnknown;
+  }
+  at->inverse_error = -1;
+  at->tight = 0;
+  at->logical = (1 << kRows) - 1;
+  settle_costs(program, *at);
+  for (int lane = 0; lane < kRows; ++lane) {
+    double x = 0;
+    for (int k = 0; k < kRows; ++k) x += at->inverse[k][lane] * loads.at(k, load);
+    const double towards = x > 0 ? -1 : 1;
+    for (int way = 0; way < 2; ++way) {
+      const double sign = way == 0 ? towards : -towards;
+      const int entering = entering_ray(program, *at, lane, sign);
+      if (entering < 0) continue;
+      Vertex* const to = at == &scratch[0] ? &scratch[1] : &scratch[0];
+      if (!walk(program, *at, exchange_of(program, *at, lane, entering), *to)) continue;
+      settle_costs(program, *to);
+      at = to;
+      break;
+    }
+  }
+  unsigned slot = 0;
+  known_vertex(memory, at->tight, slot);
+  memory.vertex[0] = *at;
+  return keep(memory, slot);
 }
 
-/// Looks among the bases of `vertex` for one that is feasible for b. Fills the answer where it is; else
-/// leaves the basis nearest to feasible in `nearest`.
-inline bool look_up(const Program& program, Memory& memory, int vertex, const double* b, double size,
-                    Answer& answer, int& nearest) {
-  const double tolerance = kPrimalTolerance * size;
-  double least = kInfinity;
-  int previous = -1;
-  for (int place = memory.first[vertex]; place >= 0; previous = place, place = memory.basis[place].next) {
-    Basis& basis = memory.basis[place];
-    alignas(64) double x[kLanes];
-    combine<kLanePacks>(basis.inverse, b, x);
-    const double below = infeasibility(x, basis.column, basis.has_logical);
-    if (below > tolerance) {
-      if (below < least) {
-        least = below;
-        nearest = place;
+/// Where the edge of a lane leads, walking it where nobody has: a vertex, kEndless, or kUnknown for an edge
+/// that cannot be walked safely.
+inline int next_vertex(const Program& program, Memory& memory, int from, int lane) {
+  const int entering = entering_ray(program, memory.vertex[from], lane, 1);
+  if (entering < 0) return entering;
+  const Exchange change = exchange_of(program, memory.vertex[from], lane, entering);
+  unsigned slot = 0;
+  const int known = known_vertex(memory, change.tight, slot);
+  if (known >= 0) return known;
+  if (memory.vertices == kMaxVertices) return kUnknown;
+  Vertex& to = memory.vertex[memory.vertices];
+  if (!walk(program, memory.vertex[from], change, to)) return kUnknown;
+  settle_costs(program, to);
+  to.next[lane] = static_cast<std::int16_t>(from);
+  return keep(memory, slot);
+}
+
+/// How clearly a load lies outside, by a lane that must be at least 0.
+inline bool is_deep(const Vertex& vertex, int lane, double x, double size) {
+  const double least = kFarkasDepth * size;
+  return x * x >= least * least * vertex.length2[lane];
+}
+
+inline double value_at(const double* y, const Loads& loads, int i) {
+  double value = y[0] * loads.at(0, i);
+  for (int k = 1; k < kRows; ++k) value += y[k] * loads.at(k, i);
+  return value;
+}
+
+/// A load that a logical cannot balance: Farkas' certificate is its row.
+inline Status beyond_rank(const Program& program, const Vertex& vertex, const Octet x, int lane,
+                          double size) {
+  alignas(64) double entries[kLanes];
+  store(entries, x);
+  const double sign = entries[lane] > 0 ? -1 : 1;
+  const bool endless = entering_ray(program, vertex, lane, sign) == kEndless;
+  return endless && is_deep(vertex, lane, entries[lane], size) ? Status::Infeasible : Status::Doubtful;
+}
+
+/// Solves one load, starting at a vertex.
+inline void solve_from(const Program& program, Memory& memory, const Loads& loads, int i, int at,
+                       Answer& answer) {
+  const Load load_now = load_of(loads, i);
+  answer.status = Status::Doubtful;
+  answer.vertex = nullptr;
+  for (int steps = 0; steps < kMaxSteps; ++steps) {
+    Vertex& vertex = memory.vertex[at];
+    Octet inverse[kRows];
+    for (int k = 0; k < kRows; ++k) inverse[k] = load(vertex.inverse[k]);
+    const Octet x = combine(inverse, load_now.b);
+    const unsigned beyond = vertex.logical & bits_of(below(all(load_now.tolerance), magnitude(x)));
+    if (beyond != 0) {
+      answer.status = beyond_rank(program, vertex, x, lowest_bit(beyond), load_now.size);
+      return;
+    }
+    if (bits_of(below(x, all(-load_now.tolerance))) == 0) {
+      if (vertex.inverse_error < 0) {
+        certify(program, vertex);
+        list(memory, at);
       }
-      continue;
+      answer.value = value_at(vertex.y, loads, i);
+      answer.vertex = &vertex;
+      if (certified(program, vertex, larger(0, -least_of(x)), load_now.size, answer.value))
+        answer.status = Status::Optimal;
+      return;
     }
-    if (previous >= 0) {
-      memory.basis[previous].next = basis.next;
-      basis.next = memory.first[vertex];
-      memory.first[vertex] = place;
+    const Octet depth = x * magnitude(x) * load(vertex.per_length2);
+    const int lane = lowest_bit(lanes_at(depth, least_of(depth)));
+    int next = vertex.next[lane];
+    if (next == kUnknown) {
+      next = next_vertex(program, memory, at, lane);
+      vertex.next[lane] = static_cast<std::int16_t>(next);
     }
-    answer.value = dot_rows(basis.y, b);
-    answer.basis = &basis;
-    for (int i = 0; i < kLanes; ++i) answer.x[i] = x[i];
-    answer.status = certified(program, basis, below, size, answer.value) ? Status::Optimal : Status::Doubtful;
-    return true;
+    if (next < 0) {
+      alignas(64) double entries[kLanes];
+      store(entries, x);
+      if (next == kEndless && is_deep(vertex, lane, entries[lane], load_now.size))
+        answer.status = Status::Infeasible;
+      return;
+    }
+    at = next;
   }
-  return false;
 }
 
-void solve(const Program& program, Memory& memory, const double* b, Answer& answer) {
-  const double size = largest_magnitude(b);
-  answer.pivots = 0;
-  Run run;
-  int nearest = -1;
-  if (memory.vertices > 0) {
-    const Best best = best_vertex(memory, b);
-    if (look_up(program, memory, best.vertex, b, size, answer, nearest)) return;
+void solve(const Program& program, Memory& memory, const double* b, int stride, int count, Answer* answers) {
+  const Loads loads{b, stride};
+  for (int first = 0; first < count; first += kLanes) {
+    if (memory.vertices > kMaxVertices / 2) forget(memory);
+    if (memory.vertices == 0) first_vertex(program, memory, loads, first);
+    Octet block[kRows];
+    for (int k = 0; k < kRows; ++k) block[k] = load(b + k * stride + first);
+    alignas(64) double place[kLanes];
+    store(place, best_answers(memory, block));
+    const bool known = memory.answers > 0;
+    const int last = first + kLanes < count ? first + kLanes : count;
+    for (int i = first; i < last; ++i) {
+      const int start = known ? memory.answer[static_cast<int>(place[i - first])] : 0;
+      solve_from(program, memory, loads, i, start, answers[i]);
+    }
   }
-  if (nearest >= 0) {
-    start_from(program, memory.basis[nearest], b, run);
-  } else {
-    start_cold(program, b, run);
-  }
-  const double tolerance = kPrimalTolerance * size;
-  answer.basis = nullptr;
-  answer.status = dual_simplex(program, b, tolerance, run, answer.pivots);
-  if (answer.status != Status::Optimal) return;
-  settle(program, run, memory.last);
-  alignas(64) double x[kLanes];
-  combine<kLanePacks>(memory.last.inverse, b, x);
-  const double below = infeasibility(x, memory.last.column, memory.last.has_logical);
-  answer.value = dot_rows(memory.last.y, b);
-  answer.basis = &memory.last;
-  for (int i = 0; i < kLanes; ++i) answer.x[i] = x[i];
-  if (below > tolerance || !certified(program, memory.last, below, size, answer.value)) {
-    answer.status = Status::Doubtful;
-    return;
-  }
-  if (!memory.last.has_logical) answer.basis = keep(memory, memory.last);
-}
-
-double lower_bound(const Memory& memory, const double* b) {
-  return memory.vertices > 0 ? larger(0, best_vertex(memory, b).value) : 0;
 }
 
 }  // namespace
 
 extern const Kernel PINJAW_KERNEL;
-const Kernel PINJAW_KERNEL{PINJAW_KERNEL_NAME, &solve, &lower_bound};
+const Kernel PINJAW_KERNEL{PINJAW_KERNEL_NAME, &solve};
 
 }  // namespace pinjaw::planner::kernel

@@ -3,6 +3,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <variant>
 #include <vector>
 
@@ -15,7 +16,10 @@ namespace pinjaw::planner {
 /// axis. Below 0 only for a grasp that jams.
 struct Required {
   double force_n = 0;
-  double gap_n = 0;  ///< force_n is at most this above the true least force (0: exact to rounding)
+  /// Certified: force_n is at most this above the true least force (0: exact to rounding). At most 1e-9
+  /// max(1, force_n) but where the cone's simplex was stopped by its limit of steps; force_n is then an upper
+  /// bound.
+  double gap_n = 0;
 };
 
 /// No squeeze, however large, balances the wrench (for the cone: none under a billion times the wrench).
@@ -49,13 +53,14 @@ class SqueezeSolver {
   SqueezeOutcome least_squeeze(const model::Wrench& wrench,
                                model::FrictionModel friction = model::FrictionModel::Pyramid);
 
+  /// least_squeeze() of each wrench for the pyramid, in their order: quicker than one by one. `outcomes` is
+  /// overwritten.
+  void least_squeeze_all(std::span<const model::Wrench> wrenches, std::vector<SqueezeOutcome>& outcomes);
+
   /// The contact forces on the part, one a contact in the grasp's order, in the turned part frame, that
   /// balance `wrench` with the least squeeze; nothing where least_squeeze() has no Required.
   std::optional<std::vector<Vector3d>> balancing_forces_n(
       const model::Wrench& wrench, model::FrictionModel friction = model::FrictionModel::Pyramid);
-
-  /// A lower bound of least_squeeze() for the pyramid from what is known so far; cheap, never above it.
-  double lower_bound_n(const model::Wrench& wrench) const;
 
   /// Answers that had to be solved again in quadruple precision since the solver was made.
   int exact_solves() const;

@@ -1,257 +1,175 @@
-// Squeeze programs: ours beside GLPK, CLP and a plain dense tableau.
-#include <coin/Clp_C_Interface.h>
-#include <glpk.h>
-
-#include <Eigen/Dense>
-#include <algorithm>
+// Squeeze programs: ours beside GLPK, CLP and a plain dense tableau, and the exact cone beside NLopt.
+#include <array>
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "host/planner/force/closure.hpp"
-#include "host/planner/force/ray_program.hpp"
 #include "host/planner/force/squeeze.hpp"
+#include "tests/bench/force/solvers.hpp"
 #include "tests/bench/suites.hpp"
 #include "tests/bench/support/cpu_time.hpp"
-#include "tests/host/planner/force/zoo.hpp"
 
-namespace pinjaw::planner {
+namespace pinjaw::bench {
 namespace {
 
-using RightHandSide = std::array<double, kernel::kRows>;
+namespace kernel = planner::kernel;
+using planner::Required;
+using planner::SqueezeSolver;
 
-constexpr int kLoads = 302;   // BB's 300 sprays and 2 accelerations
-constexpr int kRepeats = 5;   // the median counts
-constexpr int kCompared = 5;  // grasps that the slow ones do
+constexpr int kGrasps = 40;     // of ours, whose times are short
+constexpr int kPeerGrasps = 5;  // of the general solvers
+constexpr int kRepeats = 7;     // the median counts
+constexpr int kRounds = 5;      // of ours a turn: a plan rates thousands of grasps on end
+constexpr int kNloptLoads = 4;  // of one grasp: SLSQP is slow
 
-/// One grasp's program and its loads, as every solver gets them.
-struct Case {
-  Grasp grasp;
-  kernel::Program program{};
-  std::vector<model::Wrench> wrenches;
-  std::vector<RightHandSide> right;
-  int columns = 0;
-};
-
-std::vector<std::unique_ptr<Case>> cases(int count) {
-  base::Random random(1);
-  std::vector<std::unique_ptr<Case>> all;
-  while (static_cast<int>(all.size()) < count) {
-    auto one = std::make_unique<Case>();
-    one->grasp = zoo::random_grasp(zoo::Family::FormClosed, random);
-    if (jamming_contact(one->grasp)) continue;
-    const GraspFrame frame = frame_of(one->grasp);
-    fill_program(one->grasp, frame, one->grasp.mu / std::sqrt(2.0), one->program);
-    one->columns = 4 * static_cast<int>(one->grasp.contacts.size());
-    for (int l = 0; l < kLoads; ++l) {
-      one->wrenches.push_back(zoo::random_wrench(zoo::Family::FormClosed, one->grasp, random));
-      one->right.push_back(frame.right_hand_side(one->wrenches.back()));
-    }
-    all.push_back(std::move(one));
-  }
-  return all;
-}
-
-/// Solves every load of a case; the sum of the forces, so that nothing is optimised away and answers can be
-/// compared.
-using Solve = std::function<double(const Case&)>;
-
-double with_kernel(const kernel::Kernel& kernel, kernel::Memory& memory, const Case& one) {
+double sum_by_kernel(const kernel::Kernel& kernel, kernel::Memory& memory,
+                     std::vector<kernel::Answer>& answers, const Case& one) {
   kernel::forget(memory);
+  kernel.solve(one.program, memory, one.loads.front().b, kStride, kLoads, answers.data());
   double sum = 0;
-  for (const RightHandSide& b : one.right) {
-    kernel::Answer answer;
-    kernel.solve(one.program, memory, b.data(), answer);
-    if (answer.status == kernel::Status::Optimal) sum += answer.value;
-  }
+  for (const kernel::Answer& answer : answers)
+    sum += answer.status == kernel::Status::Optimal ? answer.value : 0;
   return sum;
 }
 
-double with_solver(SqueezeSolver& solver, model::FrictionModel friction, const Case& one) {
+/// As a plan does it: the grasp taken, its program made, its loads brought to its frame, every answer's
+/// certificate looked at and doubtful ones solved again.
+double sum_by_solver(SqueezeSolver& solver, std::vector<planner::SqueezeOutcome>& outcomes, const Case& one) {
   solver.take(one.grasp);
+  solver.least_squeeze_all(one.wrenches, outcomes);
   double sum = 0;
-  for (const model::Wrench& wrench : one.wrenches) {
-    const SqueezeOutcome outcome = solver.least_squeeze(wrench, friction);
+  for (const auto& outcome : outcomes) {
     if (const auto* required = std::get_if<Required>(&outcome)) sum += required->force_n;
   }
   return sum;
 }
 
-double with_glpk(bool warm, const Case& one) {
-  glp_prob* problem = glp_create_prob();
-  glp_add_rows(problem, kernel::kRows);
-  glp_add_cols(problem, one.columns);
-  for (int j = 0; j < one.columns; ++j) {
-    glp_set_col_bnds(problem, j + 1, GLP_LO, 0, 0);
-    glp_set_obj_coef(problem, j + 1, one.program.cost[j]);
-    std::array<int, 7> rows{0, 1, 2, 3, 4, 5, 6};
-    std::array<double, 7> values{};
-    for (int k = 0; k < kernel::kRows; ++k) values[static_cast<std::size_t>(k) + 1] = one.program.a[k][j];
-    glp_set_mat_col(problem, j + 1, kernel::kRows, rows.data(), values.data());
-  }
-  glp_smcp control;
-  glp_init_smcp(&control);
-  control.msg_lev = GLP_MSG_OFF;
-  control.meth = warm ? GLP_DUALP : GLP_PRIMAL;
+double sum_by_cone(SqueezeSolver& solver, const Case& one) {
+  solver.take(one.grasp);
   double sum = 0;
-  for (const RightHandSide& b : one.right) {
-    for (int k = 0; k < kernel::kRows; ++k) {
-      const double right = b[static_cast<std::size_t>(k)];
-      glp_set_row_bnds(problem, k + 1, GLP_FX, right, right);
-    }
-    if (!warm) glp_std_basis(problem);
-    glp_simplex(problem, &control);
-    if (glp_get_status(problem) == GLP_OPT) sum += glp_get_obj_val(problem);
+  for (const model::Wrench& wrench : one.wrenches) {
+    const auto outcome = solver.least_squeeze(wrench, model::FrictionModel::Cone);
+    if (const auto* required = std::get_if<Required>(&outcome)) sum += required->force_n;
   }
-  glp_delete_prob(problem);
   return sum;
 }
 
-double with_clp(const Case& one) {
-  std::vector<CoinBigIndex> starts{0};
-  std::vector<int> rows;
-  std::vector<double> values;
-  for (int j = 0; j < one.columns; ++j) {
-    for (int k = 0; k < kernel::kRows; ++k) {
-      rows.push_back(k);
-      values.push_back(one.program.a[k][j]);
-    }
-    starts.push_back(static_cast<CoinBigIndex>(rows.size()));
-  }
-  const std::vector<double> lower(static_cast<std::size_t>(one.columns), 0);
-  const std::vector<double> upper(static_cast<std::size_t>(one.columns), 1e30);
-  Clp_Simplex* model = Clp_newModel();
-  Clp_setLogLevel(model, 0);
-  Clp_loadProblem(model, one.columns, kernel::kRows, starts.data(), rows.data(), values.data(), lower.data(),
-                  upper.data(), one.program.cost, one.right[0].data(), one.right[0].data());
+double sum_by_nlopt(const Case& one) {
   double sum = 0;
-  for (const RightHandSide& b : one.right) {
-    std::copy(b.begin(), b.end(), Clp_rowLower(model));
-    std::copy(b.begin(), b.end(), Clp_rowUpper(model));
-    Clp_dual(model, 0);
-    if (Clp_status(model) == 0) sum += Clp_objectiveValue(model);
-  }
-  Clp_deleteModel(model);
+  for (int i = 0; i < kNloptLoads; ++i)
+    sum += planner::cone_squeeze_by_nlopt_n(one.grasp, one.wrenches[static_cast<std::size_t>(i)]).value_or(0);
   return sum;
 }
 
-using Tableau = Eigen::Matrix<double, 7, 39, Eigen::RowMajor>;
-using TableauBasis = std::array<int, 6>;
-
-Tableau start_tableau(const Case& one, const RightHandSide& b, TableauBasis& basis) {
-  Tableau t = Tableau::Zero();
-  for (int k = 0; k < 6; ++k) {
-    const auto row = static_cast<std::size_t>(k);
-    const double sign = b[row] < 0 ? -1 : 1;
-    for (int j = 0; j < one.columns; ++j) t(k, j) = sign * one.program.a[k][j];
-    t(k, 32 + k) = 1;
-    t(k, 38) = sign * b[row];
-    basis[row] = 32 + k;
-  }
-  return t;
-}
-
-/// The last row: reduced costs of the phase, artificials costing 1 in the first.
-void price(const Case& one, int phase, const TableauBasis& basis, Tableau& t) {
-  t.row(6).setZero();
-  for (int k = 0; k < 6; ++k) {
-    const int column = basis[static_cast<std::size_t>(k)];
-    const double real_cost = column < 32 ? one.program.cost[column] : 0;
-    const double artificial_cost = column < 32 ? 0 : 1;
-    t.row(6) -= (phase == 1 ? artificial_cost : real_cost) * t.row(k);
-  }
-  if (phase == 1) return;
-  for (int j = 0; j < one.columns; ++j) t(6, j) += one.program.cost[j];
-}
-
-void minimise(const Case& one, TableauBasis& basis, Tableau& t) {
-  for (int pivots = 0; pivots < 500; ++pivots) {
-    Eigen::Index entering = 0;
-    if (t.row(6).head(one.columns).minCoeff(&entering) > -1e-10) return;
-    int row = -1;
-    for (int k = 0; k < 6; ++k) {
-      if (t(k, entering) <= 1e-10) continue;
-      if (row < 0 || t(k, 38) * t(row, entering) < t(row, 38) * t(k, entering)) row = k;
-    }
-    if (row < 0) return;
-    t.row(row) /= t(row, entering);
-    for (int k = 0; k < 7; ++k) {
-      if (k != row) t.row(k) -= t(k, entering) * t.row(row);
-    }
-    basis[static_cast<std::size_t>(row)] = static_cast<int>(entering);
-  }
-}
-
-/// The honest peer: a dense two-phase tableau on Eigen's fixed sizes, largest reduced cost, from nothing for
-/// each load.
-double by_tableau(const Case& one, const RightHandSide& b) {
-  TableauBasis basis{};
-  Tableau t = start_tableau(one, b, basis);
-  for (const int phase : {1, 2}) {
-    price(one, phase, basis, t);
-    minimise(one, basis, t);
-    if (phase == 1 && -t(6, 38) > 1e-7) return 0;
-  }
-  return -t(6, 38);
-}
-
-double with_tableau(const Case& one) {
-  double sum = 0;
-  for (const RightHandSide& b : one.right) sum += by_tableau(one, b);
-  return sum;
-}
-
-struct Row {
+/// One solver on a number of cases: its sum over the first few, which all must agree on, and its work.
+struct Entry {
   std::string name;
-  int grasps = 0;
-  Solve solve;
-  double us = 0;  // of CPU time, each program
+  int grasps;  ///< in turn, from the first again after the last
+  std::function<double(const Case&)> sum;
+  double us = 0;  ///< a load
+  double first_sum = 0;
 };
 
-/// Fills the time of each row; they take turns.
-void measure(std::vector<Row>& rows, const std::vector<std::unique_ptr<Case>>& all) {
-  std::vector<bench::Contestant> contestants;
-  for (const Row& row : rows) {
-    contestants.push_back({row.name, [&all, &row] {
-                             for (int i = 0; i < row.grasps; ++i)
-                               row.solve(*all[static_cast<std::size_t>(i)]);
+void measure(std::vector<Entry>& entries, const Cases& cases, int loads) {
+  std::vector<Contestant> contestants;
+  for (Entry& entry : entries) {
+    contestants.push_back({entry.name, [&cases, &entry] {
+                             entry.first_sum = 0;
+                             for (int i = 0; i < entry.grasps; ++i) {
+                               const double sum =
+                                   entry.sum(*cases[static_cast<std::size_t>(i) % cases.size()]);
+                               if (i < kPeerGrasps) entry.first_sum += sum;
+                             }
                            }});
   }
-  const std::vector<double> seconds = bench::median_cpu_s(contestants, kRepeats);
-  for (std::size_t i = 0; i < rows.size(); ++i) rows[i].us = 1e6 * seconds[i] / (rows[i].grasps * kLoads);
+  const std::vector<double> seconds = median_cpu_s(contestants, kRepeats);
+  for (std::size_t i = 0; i < entries.size(); ++i)
+    entries[i].us = 1e6 * seconds[i] / (entries[i].grasps * loads);
 }
 
-}  // namespace
-}  // namespace pinjaw::planner
+void expect_agreement(const std::vector<Entry>& entries) {
+  for (const Entry& entry : entries) {
+    if (std::abs(entry.first_sum - entries.front().first_sum) > 1e-6 * std::abs(entries.front().first_sum))
+      throw std::runtime_error(entry.name + " finds other forces than " + entries.front().name);
+  }
+}
 
-void pinjaw::bench::measure_squeeze(Report& report) {
-  using namespace pinjaw::planner;
-  const auto all = cases(40);
-  const int many = static_cast<int>(all.size());
+/// What is asked of each instruction set against a peer.
+struct Bars {
+  double glpk = 0;
+  double clp = 0;
+  double tableau = 0;
+};
+
+Bars bars_of(const std::string& kernel) {
+  if (kernel == "avx512") return {60, 80, 10};
+  if (kernel == "avx2") return {15, 0, 0};
+  return {};
+}
+
+void measure_programs(Report& report, const std::string& family, const Cases& cases) {
   const auto memory = std::make_unique<kernel::Memory>();
+  std::vector<kernel::Answer> answers(kLoads);
   SqueezeSolver solver;
-  std::vector<Row> rows;
+  std::vector<planner::SqueezeOutcome> outcomes;
+  const auto grasps = kRounds * static_cast<int>(cases.size());
+  std::vector<Entry> entries;
   int count = 0;
   const kernel::Kernel* const* kernels = kernel::kernels(count);
   for (int k = count - 1; k >= 0; --k) {
-    const kernel::Kernel& kernel = *kernels[k];
-    rows.push_back({std::string("squeeze program, 8 contacts, ") + kernel.name, many,
-                    [&](const Case& one) { return with_kernel(kernel, *memory, one); }});
+    entries.push_back({kernels[k]->name, grasps, [&, k](const Case& one) {
+                         return sum_by_kernel(*kernels[k], *memory, answers, one);
+                       }});
   }
-  const auto ours = static_cast<std::size_t>(count);
-  rows.push_back({"Eigen dense tableau, cold", kCompared, with_tableau});
-  rows.push_back({"GLPK, warm dual", kCompared, [](const Case& one) { return with_glpk(true, one); }});
-  rows.push_back({"GLPK, cold primal", kCompared, [](const Case& one) { return with_glpk(false, one); }});
-  rows.push_back({"CLP, warm dual", kCompared, with_clp});
-  rows.push_back({"exact cone, 8 contacts", kCompared,
-                  [&](const Case& one) { return with_solver(solver, model::FrictionModel::Cone, one); }});
-  measure(rows, all);
-  for (std::size_t i = 0; i < ours; ++i) {
-    Measurement measured{rows[i].name, "us of CPU time", rows[i].us};
-    for (std::size_t p = ours; p + 1 < rows.size(); ++p) measured.peers.push_back({rows[p].name, rows[p].us});
+  entries.push_back(
+      {"SqueezeSolver", grasps, [&](const Case& one) { return sum_by_solver(solver, outcomes, one); }});
+  const auto first_peer = entries.size();
+  entries.push_back({"Eigen dense tableau, cold", kPeerGrasps, sum_by_tableau});
+  entries.push_back({"GLPK, warm dual", kPeerGrasps, [](const Case& one) { return sum_by_glpk(one, true); }});
+  entries.push_back(
+      {"GLPK, cold primal", kPeerGrasps, [](const Case& one) { return sum_by_glpk(one, false); }});
+  entries.push_back(
+      {"CLP, warm dual()", kPeerGrasps, [](const Case& one) { return sum_by_clp(one, false); }});
+  entries.push_back(
+      {"CLP, warm dual(0, 7)", kPeerGrasps, [](const Case& one) { return sum_by_clp(one, true); }});
+  measure(entries, cases, kLoads);
+  expect_agreement(entries);
+  for (std::size_t i = 0; i < first_peer; ++i) {
+    const Bars bars = bars_of(entries[i].name);
+    const std::array<double, 5> at_least{bars.tableau, bars.glpk, 0, bars.clp, bars.clp};
+    Measurement measured{"squeeze program, 8 contacts, " + family + ", " + entries[i].name, "us of CPU time",
+                         entries[i].us};
+    for (std::size_t p = first_peer; p < entries.size(); ++p)
+      measured.peers.push_back({entries[p].name, entries[p].us, at_least[p - first_peer]});
     report.add(std::move(measured));
   }
-  report.add({rows.back().name, "us of CPU time", rows.back().us});
 }
+
+void measure_cone(Report& report, const Cases& cases) {
+  SqueezeSolver solver;
+  std::vector<Entry> ours{
+      {"exact cone", kPeerGrasps, [&](const Case& one) { return sum_by_cone(solver, one); }}};
+  std::vector<Entry> nlopt{{"NLopt SLSQP", 1, sum_by_nlopt}};
+  measure(ours, cases, kLoads);
+  measure(nlopt, cases, kNloptLoads);
+  constexpr double kBar = 500;
+  report.add({"exact cone, 8 contacts, pyramid's program included",
+              "us of CPU time",
+              ours[0].us,
+              {{nlopt[0].name, nlopt[0].us, kBar}}});
+}
+
+}  // namespace
+
+void measure_squeeze(Report& report) {
+  const Cases planned = planned_cases(kGrasps);
+  measure_programs(report, "planned grasps under sprays", planned);
+  measure_programs(report, "convex parts under sprays", convex_part_cases(kGrasps));
+  measure_programs(report, "random wrenches", random_wrench_cases(kGrasps));
+  measure_cone(report, planned);
+}
+
+}  // namespace pinjaw::bench

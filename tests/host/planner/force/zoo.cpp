@@ -96,16 +96,17 @@ void turn_and_move(Grasp& grasp, double angle_rad, const Vector3d& t_mm) {
 }  // namespace
 
 std::vector<Family> all_families() {
-  return {Family::FormClosed,  Family::Mixed,      Family::NotFormClosed,  Family::OnePointAPin,
-          Family::TwoContacts, Family::NoFriction, Family::LittleFriction, Family::SymmetricBox,
-          Family::Doubled,     Family::Steep,      Family::NearCoincident, Family::FarFromOrigin};
+  return {Family::FormClosed,   Family::Mixed,      Family::NotFormClosed,  Family::OnePointAPin,
+          Family::TwoContacts,  Family::NoFriction, Family::LittleFriction, Family::HardlyAnyFriction,
+          Family::SymmetricBox, Family::Doubled,    Family::Steep,          Family::NearCoincident,
+          Family::FarFromOrigin};
 }
 
 std::string name_of(Family family) {
-  static const std::array<const char*, 12> names{"form_closed",     "mixed",           "not_form_closed",
-                                                 "one_point_a_pin", "two_contacts",    "no_friction",
-                                                 "little_friction", "symmetric_box",   "doubled",
-                                                 "steep",           "near_coincident", "far_from_origin"};
+  static const std::array<const char*, 13> names{
+      "form_closed", "mixed",           "not_form_closed",     "one_point_a_pin", "two_contacts",
+      "no_friction", "little_friction", "hardly_any_friction", "symmetric_box",   "doubled",
+      "steep",       "near_coincident", "far_from_origin"};
   return names.at(static_cast<std::size_t>(family));
 }
 
@@ -116,6 +117,7 @@ Grasp random_grasp(Family family, base::Random& random) {
   grasp.mu = 0.2;
   if (family == Family::NoFriction) grasp.mu = 0;
   if (family == Family::LittleFriction) grasp.mu = 1e-4;
+  if (family == Family::HardlyAnyFriction) grasp.mu = 1e-6;
   const double steepest_rad = (family == Family::Steep ? 100 : 75) * kDegree;
   const auto feet = random_feet(steepest_rad, family != Family::NotFormClosed, random);
   switch (family) {
@@ -127,7 +129,7 @@ Grasp random_grasp(Family family, base::Random& random) {
       raise(grasp, feet, 0, -1, random);
       break;
     case Family::NearCoincident:
-      raise(grasp, feet, 1, 1e-6, random);
+      raise(grasp, feet, 1, std::pow(10, random.uniform(-9, -6)), random);
       break;
     default:
       raise(grasp, feet, 1, -1, random);
