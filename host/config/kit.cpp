@@ -58,6 +58,26 @@ model::PinStock read_pins(YamlMap map) {
   return pins;
 }
 
+std::vector<model::JawBody> read_bodies(const YamlValue& value) {
+  const auto items = value.list("a list of boxes {x_mm, y_mm, z_mm}", {1, model::Jaws::kMaxBodies});
+  if (!items) return {};
+  std::vector<model::JawBody> bodies;
+  for (const YamlValue& item : *items) {
+    YamlMap map = item.map("a box {x_mm: [lo, hi], y_mm: [lo, hi], z_mm: [lo, hi]}");
+    model::JawBody body;
+    for (const auto& [key, extent] :
+         {std::pair{"x_mm", &body.x_mm}, {"y_mm", &body.y_mm}, {"z_mm", &body.z_mm}}) {
+      const auto range = map.require(key);
+      if (!range) continue;
+      *extent = interval(*range, coordinate()).value_or(geometry::Interval{});
+      if (extent->lo == extent->hi) range->mistake("the box has no extent here");
+    }
+    map.finish();
+    bodies.push_back(body);
+  }
+  return bodies;
+}
+
 model::Jaws read_jaws(YamlMap map) {
   model::Jaws jaws;
   if (const auto range = map.require("separation_mm")) {
@@ -72,6 +92,7 @@ model::Jaws read_jaws(YamlMap map) {
     jaws.opening_mm = opening->number(rule);
   }
   jaws.plate_thickness_mm = map.number_or("plate_thickness_mm", length_above_0(), jaws.plate_thickness_mm);
+  if (const auto bodies = map.find("bodies")) jaws.bodies = read_bodies(*bodies);
   map.finish();
   return jaws;
 }

@@ -37,11 +37,23 @@ struct PinStock {
   double min_foot_margin_mm = 0;
 };
 
+/// A box that moves with each jaw beside its plate, such as the finger that carries it. In the jaw's frame: x
+/// outwards from the plate's inner edge, y from the middle row, z from the plate's top; the right jaw's
+/// mirrors the left's.
+struct JawBody {
+  Interval x_mm;
+  Interval y_mm;
+  Interval z_mm;
+};
+
 struct Jaws {
+  static constexpr int kMaxBodies = 4;
+
   Interval separation_mm;
   double plate_gap_mm = 0;           ///< plate top to the part's lowest point
   std::optional<double> opening_mm;  ///< travel of each jaw when it opens; nothing: full travel
   double plate_thickness_mm = 10;
+  std::vector<JawBody> bodies;  ///< at most kMaxBodies
 };
 
 struct Actuator {
@@ -68,6 +80,10 @@ struct Kit {
   Actuator actuator;
   Grip grip;
 };
+
+/// The plate and the bodies of one jaw, plate first, in the jaw's frame (see JawBody). The plate is its
+/// holes' rectangle grown by the edge offset (DESIGN 3.1 no. 8).
+std::vector<JawBody> jaw_solids(const Kit& kit);
 
 /// Centre of `hole` in the gripper frame at jaw separation `separation_mm` (DESIGN 2).
 Vector2d p_GHole_mm(const Grid& grid, const Hole& hole, double separation_mm);

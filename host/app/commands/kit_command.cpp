@@ -80,6 +80,7 @@ std::string kit_text(const model::Kit& kit) {
                      kit.pins.min_engagement_mm, kit.pins.protrusion_mm, kit.pins.clearance_mm) +
          fmt::format("\n  plates {:g} mm below the part, {:g} mm thick", kit.jaws.plate_gap_mm,
                      kit.jaws.plate_thickness_mm) +
+         (kit.jaws.bodies.empty() ? "" : fmt::format(", {} bodies on each jaw", kit.jaws.bodies.size())) +
          fmt::format("\n  usable squeeze {:g} N (limit {:g} N, uncertain by {:g} N)",
                      kit.actuator.usable_squeeze_n(), kit.actuator.max_squeeze_n,
                      kit.actuator.force_uncertainty_n) +

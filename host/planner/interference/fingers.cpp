@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <limits>
+#include <numeric>
 
 namespace pinjaw::planner {
 namespace {
@@ -28,18 +29,18 @@ class ToPart {
   bool above_;
 };
 
-Plate plate_of(const model::Design& design, const model::Kit& kit, const ToPart& to_part, JawSide jaw) {
-  const model::Grid& grid = kit.grid;
+Plate plate_of(const model::Design& design, const model::JawBody& solid, const ToPart& to_part, JawSide jaw) {
   const double outwards = jaw == JawSide::Left ? -1 : 1;
-  const double half_x_mm = grid.edge_offset_mm + (grid.columns - 1) / 2.0 * grid.spacing_mm;
-  const double half_y_mm = grid.edge_offset_mm + (grid.rows - 1) / 2.0 * grid.spacing_mm;
+  const Vector2d middle_mm(
+      outwards * (design.jaw_separation_mm / 2 + std::midpoint(solid.x_mm.lo, solid.x_mm.hi)),
+      std::midpoint(solid.y_mm.lo, solid.y_mm.hi));
   const double opening_mm = (design.jaw_open_mm - design.jaw_separation_mm) / 2;
   const double plate_top_mm = design.pins.front().top_z_mm - design.pins.front().length_mm;
-  return {.closed = {.center_mm = to_part.point({outwards * (design.jaw_separation_mm / 2 + half_x_mm), 0}),
+  return {.closed = {.center_mm = to_part.point(middle_mm),
                      .direction = to_part.vector(Vector2d::UnitX()),
-                     .half_mm = {half_x_mm, half_y_mm}},
+                     .half_mm = {solid.x_mm.length() / 2, solid.y_mm.length() / 2}},
           .opening_mm = to_part.vector({outwards * opening_mm, 0}),
-          .z_mm = to_part.z({plate_top_mm - kit.jaws.plate_thickness_mm, plate_top_mm})};
+          .z_mm = to_part.z({plate_top_mm + solid.z_mm.lo, plate_top_mm + solid.z_mm.hi})};
 }
 
 Interval hull(const Interval& a, const Interval& b) {
@@ -72,10 +73,12 @@ FingerSet fingers_of(const model::Design& design, const Holder& holder, double p
     set.floor_z_mm = to_part.z({part_low_mm, part_low_mm}).lo;
     return set;
   }
-  for (const JawSide jaw : {JawSide::Left, JawSide::Right}) {
-    Plate& plate = set.plates[static_cast<std::size_t>(set.plate_count++)];
-    plate = plate_of(design, kit, to_part, jaw);
-    set.plates_z_mm = hull(set.plates_z_mm, plate.z_mm);
+  for (const model::JawBody& solid : model::jaw_solids(kit)) {
+    for (const JawSide jaw : {JawSide::Left, JawSide::Right}) {
+      Plate& plate = set.plates[static_cast<std::size_t>(set.plate_count++)];
+      plate = plate_of(design, solid, to_part, jaw);
+      set.plates_z_mm = hull(set.plates_z_mm, plate.z_mm);
+    }
   }
   return set;
 }

@@ -21,7 +21,7 @@ struct Finger {
   Interval z_mm;  ///< from the plate to the tip, whichever is higher
 };
 
-/// One grid plate in the same frame; it moves by `opening_mm` with its pins.
+/// One grid plate or jaw body in the same frame; it moves by `opening_mm` with its pins.
 struct Plate {
   geometry::Rectangle closed;
   Vector2d opening_mm = Vector2d::Zero();
@@ -31,6 +31,7 @@ struct Plate {
 /// All that phase 6 needs of one design: compact, made once, then compared with millions of others.
 struct FingerSet {
   static constexpr int kMaxPins = 4;
+  static constexpr int kMaxPlates = 2 * (1 + model::Jaws::kMaxBodies);
 
   model::Side side = model::Side::Below;
   bool opens = true;  ///< false: a pallet, which never opens
@@ -39,10 +40,10 @@ struct FingerSet {
   int pin_count = 0;
   int plate_count = 0;  ///< none for a pallet: the floor stands for its plate
   std::array<Finger, kMaxPins> pins;
-  std::array<Plate, 2> plates;
+  std::array<Plate, kMaxPlates> plates;
   std::optional<double> floor_z_mm;  ///< the plane on which the part rests, for a pallet or fixture
   Interval pins_z_mm;                ///< of all pins
-  Interval plates_z_mm;              ///< of all plates
+  Interval plates_z_mm;              ///< of all plates and bodies
 };
 
 /// What a design is, beside its pins: its gripper.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
 #include "host/model/tolerance.hpp"
 
@@ -28,7 +29,12 @@ double sign_of_outwards(JawSide jaw) {
 
 Path::Path(const PlanarFixture& fixture, std::span<const PinToLoad> pins, const model::Kit& kit,
            const Surroundings& surroundings, const LoadingOptions& options)
-    : kit_(kit), surroundings_(surroundings), options_(options), clear_mm_(-1), blocked_mm_(kInfinity) {
+    : kit_(kit),
+      surroundings_(surroundings),
+      options_(options),
+      solids_(model::jaw_solids(kit)),
+      clear_mm_(-1),
+      blocked_mm_(kInfinity) {
   const Vector2d closing_P = geometry::direction(-fixture.theta_rad);
   for (const PinToLoad& pin : pins) {
     const PlanarPin& planar = fixture.pins[pin.pin];
@@ -50,7 +56,7 @@ std::optional<LoadingLoss> Path::loss_at(const PlacedFixture& placed) {
   }
   if (pins_meet_part(opening_mm)) return LoadingLoss::PinSweep;
   if (pins_meet_others(opening_mm)) return LoadingLoss::PinMeetsObstacle;
-  if (plates_meet_anything(placed, opening_mm)) return LoadingLoss::PlateMeetsObstacle;
+  if (jaws_meet_anything(placed, opening_mm)) return LoadingLoss::PlateMeetsObstacle;
   return std::nullopt;
 }
 
@@ -81,31 +87,37 @@ bool Path::pins_meet_others(double opening_mm) const {
   return false;
 }
 
-Rectangle Path::plate(const PlacedFixture& placed, JawSide jaw, const geometry::Interval& opening_mm) const {
-  const model::Grid& grid = kit_.grid;
-  const double width_mm = 2 * grid.edge_offset_mm + (grid.columns - 1) * grid.spacing_mm;
-  const double inner_mm = placed.jaw_separation_mm / 2 + opening_mm.lo;
-  const double outer_mm = placed.jaw_separation_mm / 2 + opening_mm.hi + width_mm;
-  const double half_y_mm = grid.edge_offset_mm + (grid.rows - 1) / 2.0 * grid.spacing_mm;
+Rectangle Path::covered(const model::JawBody& solid, const PlacedFixture& placed, JawSide jaw,
+                        const geometry::Interval& opening_mm) const {
+  const double inner_mm = placed.jaw_separation_mm / 2 + opening_mm.lo + solid.x_mm.lo;
+  const double outer_mm = placed.jaw_separation_mm / 2 + opening_mm.hi + solid.x_mm.hi;
   const geometry::Pose2 X_PG = placed.part_pose.inverse();
   const double clearance_mm = kit_.pins.clearance_mm;
-  return {.center_mm = X_PG * Vector2d(sign_of_outwards(jaw) * (inner_mm + outer_mm) / 2, 0),
+  return {.center_mm = X_PG * Vector2d(sign_of_outwards(jaw) * (inner_mm + outer_mm) / 2,
+                                       std::midpoint(solid.y_mm.lo, solid.y_mm.hi)),
           .direction = X_PG.turned(Vector2d::UnitX()),
-          .half_mm = {(outer_mm - inner_mm) / 2 + clearance_mm, half_y_mm + clearance_mm}};
+          .half_mm = {(outer_mm - inner_mm) / 2 + clearance_mm, solid.y_mm.length() / 2 + clearance_mm}};
 }
 
-bool Path::plates_meet_anything(const PlacedFixture& placed, double opening_mm) const {
-  const double top_mm = surroundings_.plate_top_mm - kResting_mm;
-  const Slab standing{surroundings_.plate_top_mm - kit_.jaws.plate_thickness_mm, top_mm};
+bool Path::solid_meets_anything(const model::JawBody& solid, const PlacedFixture& placed, JawSide jaw,
+                                double opening_mm) const {
+  const double top_mm = surroundings_.plate_top_mm + solid.z_mm.hi - kResting_mm;
+  const Slab standing{surroundings_.plate_top_mm + solid.z_mm.lo, top_mm};
   const Slab coming{.hi_mm = top_mm};
+  const auto in_the_way = [&](const Surface& surface) {
+    if (surface.z_range_mm().lo > top_mm) return false;
+    return surface.meets(covered(solid, placed, jaw, {0, opening_mm}), standing) ||
+           surface.meets(covered(solid, placed, jaw, {opening_mm, opening_mm}), coming);
+  };
+  return in_the_way(*surroundings_.part) ||
+         std::any_of(surroundings_.others.begin(), surroundings_.others.end(), in_the_way);
+}
+
+bool Path::jaws_meet_anything(const PlacedFixture& placed, double opening_mm) const {
   return std::any_of(jaws_.begin(), jaws_.end(), [&](JawSide jaw) {
-    const auto in_the_way = [&](const Surface& surface) {
-      if (surface.z_range_mm().lo > top_mm) return false;
-      return surface.meets(plate(placed, jaw, {0, opening_mm}), standing) ||
-             surface.meets(plate(placed, jaw, {opening_mm, opening_mm}), coming);
-    };
-    return in_the_way(*surroundings_.part) ||
-           std::any_of(surroundings_.others.begin(), surroundings_.others.end(), in_the_way);
+    return std::any_of(solids_.begin(), solids_.end(), [&](const model::JawBody& solid) {
+      return solid_meets_anything(solid, placed, jaw, opening_mm);
+    });
   });
 }
 

@@ -29,17 +29,21 @@ class Path {
 
   [[nodiscard]] bool pins_meet_part(double opening_mm);
   [[nodiscard]] bool pins_meet_others(double opening_mm) const;
-  [[nodiscard]] bool plates_meet_anything(const PlacedFixture& placed, double opening_mm) const;
-  [[nodiscard]] geometry::Rectangle plate(const PlacedFixture& placed, model::JawSide jaw,
-                                          const geometry::Interval& opening_mm) const;
+  [[nodiscard]] bool jaws_meet_anything(const PlacedFixture& placed, double opening_mm) const;
+  [[nodiscard]] bool solid_meets_anything(const model::JawBody& solid, const PlacedFixture& placed,
+                                          model::JawSide jaw, double opening_mm) const;
+  /// What the solid of a jaw covers in plan while the jaw moves over `opening_mm`, grown by the clearance.
+  [[nodiscard]] geometry::Rectangle covered(const model::JawBody& solid, const PlacedFixture& placed,
+                                            model::JawSide jaw, const geometry::Interval& opening_mm) const;
 
   const model::Kit& kit_;
   const Surroundings& surroundings_;
   LoadingOptions options_;
   std::vector<Pin> pins_;
-  std::vector<model::JawSide> jaws_;  ///< those that have pins, and so plates
-  double clear_mm_;                   ///< widest opening known to keep all pins off the part
-  double blocked_mm_;                 ///< least opening known to take a pin into the part
+  std::vector<model::JawSide> jaws_;    ///< those that have pins, and so plates
+  std::vector<model::JawBody> solids_;  ///< of each such jaw
+  double clear_mm_;                     ///< widest opening known to keep all pins off the part
+  double blocked_mm_;                   ///< least opening known to take a pin into the part
 };
 
 }  // namespace pinjaw::planner

@@ -94,6 +94,11 @@ ordered_json kit_json(const model::Kit& kit) {
                        {"plate_gap_mm", kit.jaws.plate_gap_mm},
                        {"plate_thickness_mm", kit.jaws.plate_thickness_mm}};
   if (kit.jaws.opening_mm) jaws["opening_mm"] = *kit.jaws.opening_mm;
+  for (const model::JawBody& body : kit.jaws.bodies) {
+    jaws["bodies"].push_back({{"x_mm", pair_json(body.x_mm.lo, body.x_mm.hi)},
+                              {"y_mm", pair_json(body.y_mm.lo, body.y_mm.hi)},
+                              {"z_mm", pair_json(body.z_mm.lo, body.z_mm.hi)}});
+  }
   return {{"name", kit.name},
           {"sha256", kit.sha256},
           {"grid",
@@ -181,6 +186,12 @@ model::Kit read_kit_json(const JsonField& field) {
   kit.jaws.plate_gap_mm = jaws.number("plate_gap_mm");
   kit.jaws.plate_thickness_mm = jaws.number("plate_thickness_mm");
   if (jaws.has("opening_mm")) kit.jaws.opening_mm = jaws.number("opening_mm");
+  if (jaws.has("bodies")) {
+    for (const JsonField& body : jaws.at("bodies").list()) {
+      kit.jaws.bodies.push_back(
+          {read_interval(body.at("x_mm")), read_interval(body.at("y_mm")), read_interval(body.at("z_mm"))});
+    }
+  }
   kit.actuator.max_squeeze_n = not_negative(field.at("actuator").at("max_squeeze_n"));
   kit.actuator.force_uncertainty_n = field.at("actuator").number("force_uncertainty_n");
   const JsonField grip = field.at("grip");

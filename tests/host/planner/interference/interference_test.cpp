@@ -47,6 +47,24 @@ TEST(Fingers, from_below_stand_where_the_gripper_has_them) {
   EXPECT_FALSE(set.floor_z_mm);
 }
 
+TEST(Fingers, bodies_move_with_their_plates) {
+  model::Kit kit = shared_kit();
+  kit.jaws.bodies = {{{10, 40}, {-8, 2}, {-50, -10}}};
+  const FingerSet set = fingers_of(design_of({}), {&kit, Side::Below, true}, 0);
+  ASSERT_EQ(set.plate_count, 4);
+  EXPECT_EQ(set.plates_z_mm, (Interval{-52, -2}));
+  const FingerSet plain = fingers_of(design_of({}), {&shared_kit(), Side::Below, true}, 0);
+  for (const std::size_t jaw : {0U, 1U}) {
+    const double outwards = jaw == 0 ? -1 : 1;
+    const Vector2d inner_mm = plain.plates[jaw].closed.center_mm -
+                              outwards * plain.plates[jaw].closed.half_mm.x() * Vector2d::UnitX();
+    EXPECT_NEAR((set.plates[2 + jaw].closed.center_mm - inner_mm - Vector2d(outwards * 25, -3)).norm(), 0,
+                1e-12);
+    EXPECT_EQ(set.plates[2 + jaw].opening_mm, plain.plates[jaw].opening_mm);
+    EXPECT_EQ(set.plates[2 + jaw].z_mm, (Interval{-52, -12}));
+  }
+}
+
 TEST(Fingers, from_above_are_those_from_below_with_x_and_z_turned) {
   const Grip grip{.part_pose = {0.3, {3, 4}}};
   const FingerSet up = below(grip);

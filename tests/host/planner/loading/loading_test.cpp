@@ -210,6 +210,29 @@ TEST_F(LoadingBeside, an_obstacle_in_the_way_of_a_plate_is_told_apart) {
   EXPECT_TRUE(beside({{-49, -1, kPlateTop_mm}, {-47, 1, 5}})) << "resting on the plate";
 }
 
+TEST_F(LoadingBeside, a_body_that_moves_with_its_jaw_must_be_clear_as_the_plate_must) {
+  kit_.jaws.separation_mm.lo = 15;
+  const Bounds post{{-75, 18, -30}, {-70, 22, -14}};
+  EXPECT_TRUE(beside(post)) << "the plate is above it and ends at y = 25 - 5";
+  kit_.jaws.bodies = {{{20, 55}, {15, 40}, {-60, -11}}};
+  const auto design = beside(post);
+  ASSERT_FALSE(design) << "closed the body ends at x = -62.5, open at -75";
+  EXPECT_EQ(design.error(), LoadingLoss::PlateMeetsObstacle);
+  EXPECT_TRUE(beside({{-75, -22, -30}, {-70, -18, -14}})) << "y counts";
+  EXPECT_FALSE(beside({{70, 18, -30}, {75, 22, -14}})) << "the right jaw mirrors the left";
+  EXPECT_TRUE(beside({{-75, 18, kPlateTop_mm - 11}, {-70, 22, 5}})) << "resting on the body";
+  EXPECT_FALSE(beside({{-75, 18, -90}, {-70, 22, -80}})) << "in its way along z";
+}
+
+TEST_F(LoadingBeside, a_body_may_meet_the_part_itself) {
+  kit_.jaws.bodies = {{{-6, 0}, {-3, 3}, {0, 4}}};
+  const auto design = beside({{100, 100, 0}, {101, 101, 1}});
+  ASSERT_FALSE(design) << "it reaches 6 into a gap of 2.5, 2 above the part's lowest point";
+  EXPECT_EQ(design.error(), LoadingLoss::PlateMeetsObstacle);
+  kit_.jaws.bodies = {{{-6, 0}, {-3, 3}, {0, 1.7}}};
+  EXPECT_TRUE(beside({{100, 100, 0}, {101, 101, 1}})) << "under it";
+}
+
 TEST_F(LoadingBeside, a_pallet_neither_opens_nor_sweeps) {
   const auto design = beside({{-20, -6, 0}, {-18, -4, 5}}, {.motion = JawMotion::None});
   ASSERT_TRUE(design);
