@@ -18,8 +18,16 @@ struct Surface::Index {
   std::vector<Box> boxes;          ///< theirs
   std::vector<ShadowSpans> spans;  ///< theirs
   Bvh tree{{}};
+  /// Two neighbouring points of a silhouette, in the order of the leaves of their tree.
+  struct Link {
+    Vector3d a_mm, b_mm;
+    double radius_mm;
+  };
+  std::vector<Link> links;
+  Bvh links_tree{{}};
 
   explicit Index(TriangleMesh source);
+  void index_silhouettes();
 
   /// Calls leaf(facet) for facets that may meet the region and the slab [slab.lo, slab.hi]; `slab` may shrink
   /// while the walk goes on. Stops where leaf returns true.
@@ -84,6 +92,23 @@ Surface::Index::Index(TriangleMesh source) : mesh(std::move(source)) {
     boxes.push_back(given_boxes[static_cast<std::size_t>(i)]);
     spans.emplace_back(facets.back());
   }
+  index_silhouettes();
+}
+
+void Surface::Index::index_silhouettes() {
+  std::vector<Link> given;
+  std::vector<Box> link_boxes;
+  for (const Silhouette& line : mesh.silhouettes) {
+    for (std::size_t i = 1; i < line.points_mm.size(); ++i) {
+      given.push_back(
+          {line.points_mm[i - 1], line.points_mm[i], std::max(line.radius_mm[i - 1], line.radius_mm[i])});
+      link_boxes.emplace_back();
+      link_boxes.back().include(line.points_mm[i - 1]);
+      link_boxes.back().include(line.points_mm[i]);
+    }
+  }
+  links_tree = Bvh(link_boxes);
+  for (const int i : links_tree.order()) links.push_back(given[static_cast<std::size_t>(i)]);
 }
 
 template <class Region, class First, class Leaf>
@@ -206,6 +231,31 @@ std::optional<Hit> Surface::first_hit(const Ray& ray) const {
       });
   if (hit == nullptr) return std::nullopt;
   return index_->hit_of(*hit, nearest_mm, ray.origin_mm + nearest_mm * ray.direction);
+}
+
+std::optional<double> Surface::silhouette_z_mm(const Vector2d& p_mm, double z_mm, double depth_mm) const {
+  constexpr double kMargin = 1.5;
+  const Stadium near({p_mm, p_mm, depth_mm});
+  std::optional<double> nearest_mm;
+  index_->links_tree.walk(
+      [&](const Bvh::Node& node) { return !near.may_meet(node.box); },
+      [](const Bvh::Node&, const Bvh::Node&) { return true; },
+      [&](const Bvh::Node& node) {
+        for (std::int32_t i = node.first; i < node.first + node.count; ++i) {
+          const Index::Link& link = index_->links[static_cast<std::size_t>(i)];
+          const Vector2d along_mm = (link.b_mm - link.a_mm).head<2>();
+          const double squared = along_mm.squaredNorm();
+          const double t =
+              squared > 0 ? std::clamp(along_mm.dot(p_mm - link.a_mm.head<2>()) / squared, 0.0, 1.0) : 0.0;
+          const Vector3d foot_mm = link.a_mm + t * (link.b_mm - link.a_mm);
+          if ((foot_mm.head<2>() - p_mm).norm() > depth_mm) continue;
+          const double away_mm = std::abs(foot_mm.z() - z_mm);
+          if (away_mm > kMargin * std::sqrt(2 * link.radius_mm * depth_mm)) continue;
+          if (!nearest_mm || away_mm < std::abs(*nearest_mm - z_mm)) nearest_mm = foot_mm.z();
+        }
+        return false;
+      });
+  return nearest_mm;
 }
 
 const TriangleMesh& Surface::mesh() const {

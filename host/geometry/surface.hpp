@@ -67,6 +67,16 @@ class Surface {
   /// Its distance is counted from the lowest z of the surface.
   [[nodiscard]] std::optional<Hit> lowest_above(const Vector2d& p_mm) const;
 
+  /// The height of the silhouette that stands for a surface point at `z_mm` above or below it.
+  ///
+  /// Behind a silhouette a surface of upright radius R is at depth d only at sqrt(2 R d) above and below. So
+  /// what a pin meets at `p_mm` within `depth_mm` in plan spans heights that a true pin does not touch: it
+  /// touches at the silhouette alone. Gives the silhouette's height where one passes within `depth_mm` of
+  /// `p_mm` and `z_mm` lies in that span, taken half again as large since p and the triangles are right to
+  /// parts of the depth; else nothing.
+  [[nodiscard]] std::optional<double> silhouette_z_mm(const Vector2d& p_mm, double z_mm,
+                                                      double depth_mm) const;
+
   [[nodiscard]] const TriangleMesh& mesh() const;
   [[nodiscard]] Interval x_range_mm() const;
   [[nodiscard]] Interval y_range_mm() const;

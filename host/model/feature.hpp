@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "host/geometry/plane.hpp"
+#include "host/model/tolerance.hpp"
 
 namespace pinjaw::model {
 
@@ -22,11 +23,17 @@ struct Feature {
   int edge = 0;  ///< edge of that loop; on a CAD part the number of the source edge or face
   geometry::Curve curve;
   Bulge bulge = Bulge::Convex;
-  bool approximate = false;  ///< fitted (B-spline, mesh) rather than exact
+  double error_mm =
+      0;  ///< how far the part's own edge may lie from the curve; 0 where it is the curve itself
   /// Parts of the curve, as arc lengths in [0, length], that a closed pin can reach; sorted and disjoint.
   /// The whole curve on a profile, where the planar phase itself keeps pins out of the outline.
   std::vector<geometry::Interval> reach_mm;
 };
+
+/// Whether the curve was fitted (freeform edge, silhouette, mesh) and differs from the part's own edge.
+[[nodiscard]] inline bool is_approximate(const Feature& feature) {
+  return feature.error_mm > kExactMm;
+}
 
 /// Unit normal at `along_mm`, from the material to the free side.
 geometry::Vector2d outward_normal_at(const Feature& feature, double along_mm);

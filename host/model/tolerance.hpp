@@ -7,4 +7,8 @@ namespace pinjaw::model {
 /// fit.
 inline constexpr double kEps_mm = 0.02;
 
+/// A curve that differs from the part's own by less is that curve: far above the rounding of files and of
+/// fits, far below anything that a pin feels. Chosen.
+inline constexpr double kExactMm = 1e-6;
+
 }  // namespace pinjaw::model

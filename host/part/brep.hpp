@@ -68,4 +68,23 @@ struct WallFace {
 };
 base::Expected<std::vector<WallFace>> wall_faces_of(const Shape& shape);
 
+/// The silhouettes of a shape that mesh_of() has meshed, for an observer along `up`: found where the true
+/// normal changes its side between mesh nodes, then on the exact faces to rounding. Lines that are edges
+/// between two curved faces or seams are among them.
+base::Expected<std::vector<geometry::Silhouette>> silhouettes_of(const Shape& shape, const Vector3d& up);
+
+/// All that OpenCASCADE tells of a part: plain values, in the file's frame. Nothing else leaves it.
+struct BrepValues {
+  std::vector<Solid> solids;  ///< all of the file, in its order
+  BrepMass mass;              ///< from here on of the chosen solids
+  BrepEdges edges;
+  std::vector<WallFace> wall_faces;
+  BrepMesh mesh;  ///< with its silhouettes
+};
+
+/// The values of the `chosen` ones among `solids`, silhouettes as they are when the direction `up` stands
+/// upright.
+base::Expected<BrepValues> values_of(const std::vector<NamedShape>& solids,
+                                     const std::vector<NamedShape>& chosen, const Vector3d& up);
+
 }  // namespace pinjaw::part

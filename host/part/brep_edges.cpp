@@ -16,6 +16,7 @@
 
 #include "host/part/brep.hpp"
 #include "host/part/curve_fit.hpp"
+#include "host/part/occt_values.hpp"
 
 namespace pinjaw::part {
 namespace {
@@ -23,10 +24,6 @@ namespace {
 constexpr double kFitMm = 1e-3;  // a B-spline this near a line or circle is one
 constexpr int kFitSamples = 17;
 constexpr double kChordAngleRad = 0.1;
-
-Vector3d vector_of(const gp_XYZ& v) {
-  return {v.X(), v.Y(), v.Z()};
-}
 
 Ellipse3 ellipse_of(const gp_Ax2& axes, double major_mm, double minor_mm, const BRepAdaptor_Curve& curve) {
   return {.center_mm = vector_of(axes.Location().XYZ()),
@@ -76,8 +73,9 @@ EdgeCurve curve_of(const TopoDS_Edge& edge) {
     default:
       break;
   }
-  if (const auto exact = recognised(sampled(curve), kFitMm)) return {.curve = *exact, .approximate = true};
-  return {.curve = chorded(curve), .approximate = true};
+  if (auto found = recognised(sampled(curve), kFitMm))
+    return {.curve = std::move(found->curve), .error_mm = found->error_mm};
+  return {.curve = chorded(curve)};
 }
 
 /// True where one of the edge's faces has it on both sides.

@@ -8,15 +8,15 @@
 namespace pinjaw::part {
 namespace {
 
-std::optional<Line3> as_line(std::span<const Vector3d> samples, double tolerance_mm) {
+std::optional<Recognised> as_line(std::span<const Vector3d> samples, double tolerance_mm) {
   const Vector3d chord = samples.back() - samples.front();
   const double length_mm = chord.norm();
   if (length_mm <= tolerance_mm) return std::nullopt;
   const Vector3d along = chord / length_mm;
-  const bool straight = std::ranges::all_of(
-      samples, [&](const Vector3d& p) { return along.cross(p - samples.front()).norm() <= tolerance_mm; });
-  if (!straight) return std::nullopt;
-  return Line3{samples.front(), samples.back()};
+  double error_mm = 0;
+  for (const Vector3d& p : samples) error_mm = std::max(error_mm, along.cross(p - samples.front()).norm());
+  if (error_mm > tolerance_mm) return std::nullopt;
+  return Recognised{Line3{samples.front(), samples.back()}, error_mm};
 }
 
 struct Circle {
@@ -35,7 +35,7 @@ std::optional<Circle> through(const Vector3d& a, const Vector3d& b, const Vector
   return Circle{a + to_center, normal.normalized(), to_center.norm()};
 }
 
-std::optional<Ellipse3> as_circle(std::span<const Vector3d> samples, double tolerance_mm) {
+std::optional<Recognised> as_circle(std::span<const Vector3d> samples, double tolerance_mm) {
   const bool closed = (samples.back() - samples.front()).norm() <= tolerance_mm;
   const std::size_t last = samples.size() - 1;
   const auto circle = closed ? through(samples[0], samples[last / 3], samples[2 * last / 3])
@@ -44,26 +44,27 @@ std::optional<Ellipse3> as_circle(std::span<const Vector3d> samples, double tole
   Ellipse3 arc{.center_mm = circle->center_mm, .u_mm = samples[0] - circle->center_mm};
   arc.v_mm = circle->normal.cross(arc.u_mm);
   double before_rad = 0;
+  double error_mm = 0;
   for (const Vector3d& p : samples) {
     const Vector3d spoke = p - circle->center_mm;
-    if (std::abs(spoke.dot(circle->normal)) > tolerance_mm) return std::nullopt;
-    if (std::abs(spoke.norm() - circle->radius_mm) > tolerance_mm) return std::nullopt;
+    error_mm =
+        std::max({error_mm, std::abs(spoke.dot(circle->normal)), std::abs(spoke.norm() - circle->radius_mm)});
+    if (error_mm > tolerance_mm) return std::nullopt;
     double angle_rad = std::atan2(spoke.dot(arc.v_mm), spoke.dot(arc.u_mm));
     if (angle_rad < before_rad - 1e-9) angle_rad += 2 * std::numbers::pi;
     if (angle_rad < before_rad - 1e-9) return std::nullopt;
     before_rad = angle_rad;
   }
   arc.sweep_rad = closed ? 2 * std::numbers::pi : before_rad;
-  return arc;
+  return Recognised{arc, error_mm};
 }
 
 }  // namespace
 
-std::optional<Curve3> recognised(std::span<const Vector3d> samples, double tolerance_mm) {
+std::optional<Recognised> recognised(std::span<const Vector3d> samples, double tolerance_mm) {
   if (samples.size() < 4) return std::nullopt;
-  if (const auto line = as_line(samples, tolerance_mm)) return *line;
-  if (const auto circle = as_circle(samples, tolerance_mm)) return *circle;
-  return std::nullopt;
+  if (auto line = as_line(samples, tolerance_mm)) return line;
+  return as_circle(samples, tolerance_mm);
 }
 
 }  // namespace pinjaw::part

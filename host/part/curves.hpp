@@ -38,7 +38,8 @@ using Curve3 = std::variant<Line3, Ellipse3, Polyline3>;
 struct EdgeCurve {
   int edge = 0;  ///< number of the edge in the file, from 1
   Curve3 curve;
-  bool approximate = false;  ///< a B-spline recognised as a line or circle by fit
+  double error_mm =
+      0;  ///< how far the file's curve may lie from `curve`, where a line or circle was recognised in it
   std::vector<int> faces{};  ///< numbers of the faces it bounds, as in the mesh's `face_of`
 };
 

@@ -84,58 +84,26 @@ std::optional<model::Profile> profile_in_plan(const std::optional<model::Profile
   return std::nullopt;
 }
 
-base::Expected<std::vector<Solid>> listed(const std::vector<NamedShape>& solids) {
-  std::vector<Solid> list;
-  for (const NamedShape& solid : solids) {
-    const auto mass = mass_of(solid.shape);
-    if (!mass) return tl::unexpected(mass.error());
-    list.push_back({solid.name, mass->volume_mm3});
-  }
-  return list;
-}
-
-base::Expected<Part> part_of_brep(const model::PartSource& source, const std::vector<NamedShape>& solids,
-                                  const std::vector<NamedShape>& chosen) {
-  const Eigen::Matrix3d rotation = upright_rotation(source.up);
-  const Shape shape = compound_of(chosen);
-  auto list = listed(solids);
-  if (!list) return tl::unexpected(list.error());
-  const auto mass = mass_of(shape);
-  if (!mass) return tl::unexpected(mass.error());
-  auto edges = edges_of(shape);
-  if (!edges) return tl::unexpected(edges.error());
-  const auto faces = wall_faces_of(shape);
-  if (!faces) return tl::unexpected(faces.error());
-  auto meshed = mesh_of(shape, kMostTriangles);
-  if (!meshed) return tl::unexpected(meshed.error());
-
-  for (EdgeCurve& edge : edges->edges) edge.curve = rotated(edge.curve, rotation);
-  geometry::TriangleMesh mesh = rotated(std::move(meshed->mesh), rotation);
-  auto walls = walls_of(*faces, rotation, mesh);
-  return Part{.name = {},
-              .file = {},
-              .sha256 = {},
-              .surface = geometry::Surface(std::move(mesh)),
-              .edges = std::move(edges->edges),
-              .walls = std::move(walls),
-              .contours = {},
-              .edge_counts = edges->counts,
-              .mesh_deflection_mm = meshed->deflection_mm,
-              .solids = std::move(*list),
-              .volume_mm3 = mass->volume_mm3,
-              .centroid_mm = rotation * mass->centroid_mm,
-              .profile = profile_in_plan(source.profile, rotation)};
-}
-
-base::Expected<Part> read_brep(const model::PartSource& source, const std::string& bytes,
-                               const Selection& selection) {
+/// Everything of `source` that OpenCASCADE has to be asked.
+base::Expected<BrepValues> brep_values(const model::PartSource& source, const std::string& bytes,
+                                       const Selection& selection) {
   const std::string file = source.file.string();
   const auto solids = solids_of(source, bytes);
   if (!solids) return tl::unexpected(solids.error());
   const auto chosen = selected(*solids, selection, file);
   if (!chosen) return tl::unexpected(chosen.error());
-  auto part = part_of_brep(source, *solids, *chosen);
-  if (!part) return base::failure(file + ": " + part.error().message);
+  auto values = values_of(*solids, *chosen, source.up);
+  if (!values) return base::failure(file + ": " + values.error().message);
+  return values;
+}
+
+base::Expected<Part> read_brep(const model::PartSource& source, const std::string& bytes,
+                               const Selection& selection) {
+  auto values = brep_values(source, bytes, selection);
+  if (!values) return tl::unexpected(values.error());
+  const Eigen::Matrix3d rotation = upright_rotation(source.up);
+  Part part = placed(std::move(*values), rotation);
+  part.profile = profile_in_plan(source.profile, rotation);
   return part;
 }
 

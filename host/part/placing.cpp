@@ -34,6 +34,9 @@ Curve3 rotated(const Curve3& curve, const Matrix3d& rotation) {
 
 geometry::TriangleMesh rotated(geometry::TriangleMesh mesh, const Matrix3d& rotation) {
   for (Vector3d& p : mesh.vertices_mm) p = rotation * p;
+  for (geometry::Silhouette& line : mesh.silhouettes) {
+    for (Vector3d& p : line.points_mm) p = rotation * p;
+  }
   return mesh;
 }
 
@@ -53,6 +56,25 @@ model::Profile mirrored(model::Profile profile, int axis) {
     for (auto& edge : loop) edge.curve = mirrored(edge.curve, axis);
   }
   return profile;
+}
+
+Part placed(BrepValues values, const Matrix3d& rotation) {
+  for (EdgeCurve& edge : values.edges.edges) edge.curve = rotated(edge.curve, rotation);
+  geometry::TriangleMesh mesh = rotated(std::move(values.mesh.mesh), rotation);
+  auto walls = walls_of(values.wall_faces, rotation, mesh);
+  return Part{.name = {},
+              .file = {},
+              .sha256 = {},
+              .surface = geometry::Surface(std::move(mesh)),
+              .edges = std::move(values.edges.edges),
+              .walls = std::move(walls),
+              .contours = {},
+              .edge_counts = values.edges.counts,
+              .mesh_deflection_mm = values.mesh.deflection_mm,
+              .solids = std::move(values.solids),
+              .volume_mm3 = values.mass.volume_mm3,
+              .centroid_mm = rotation * values.mass.centroid_mm,
+              .profile = {}};
 }
 
 }  // namespace pinjaw::part

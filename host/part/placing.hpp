@@ -4,7 +4,7 @@
 #include "host/part/brep.hpp"
 #include "host/part/curves.hpp"
 
-/// Rotations of the values a part is made of, and its walls once it stands. Private to host/part.
+/// From the values that OpenCASCADE told to a part that stands upright. Private to host/part.
 namespace pinjaw::part {
 
 using Eigen::Matrix3d;
@@ -22,5 +22,9 @@ model::Profile mirrored(model::Profile profile, int axis);
 /// them.
 std::vector<Wall> walls_of(const std::vector<WallFace>& faces, const Matrix3d& rotation,
                            const geometry::TriangleMesh& rotated_mesh);
+
+/// The part of these values after `rotation`, with all that they tell; its name, file, mass and profile are
+/// left to the caller.
+Part placed(BrepValues values, const Matrix3d& rotation);
 
 }  // namespace pinjaw::part

@@ -22,14 +22,11 @@ struct Options {
 
 using Counts = std::vector<std::pair<std::string, int>>;
 
-/// What was read: the edges of a STEP file, or the facets of a mesh.
-Counts read_counts(const part::Part& part) {
-  if (!part.mesh_counts) {
-    return {{"edges", part.edge_counts.total},
-            {"left_out_seams", part.edge_counts.seams},
-            {"left_out_degenerate", part.edge_counts.degenerate}};
-  }
+/// What was read of a mesh, and the edges of it that no contour stands for.
+Counts mesh_counts_of(const part::Part& part) {
+  if (!part.mesh_counts) return {};
   const part::MeshCounts& mesh = *part.mesh_counts;
+  const part::ContourCounts& contours = part.contour_counts;
   return {{"facets", mesh.facets},
           {"dropped_degenerate", mesh.degenerate},
           {"dropped_repeated", mesh.repeated},
@@ -37,22 +34,33 @@ Counts read_counts(const part::Part& part) {
           {"shells", mesh.shells},
           {"open_edges", mesh.open_edges},
           {"crowded_edges", mesh.crowded_edges},
-          {"edges", part.contour_counts.edges},
-          {"left_out_gentle", part.contour_counts.gentle},
-          {"left_out_jagged", part.contour_counts.jagged}};
+          {"edges", contours.edges},
+          {"left_out_upright", contours.upright},
+          {"left_out_gentle", contours.gentle},
+          {"left_out_jagged", contours.jagged}};
 }
 
-Counts counts_of(const planner::FeatureCounts& counts, const part::Part& part) {
-  Counts all = read_counts(part);
-  all.insert(all.end(), {{"candidates", counts.candidates},
-                         {"left_out_upright", counts.left_out_upright},
-                         {"left_out_tilted", counts.left_out_tilted},
-                         {"left_out_freeform", counts.left_out_freeform},
-                         {"edgelets", counts.edgelets},
-                         {"visible", counts.visible},
-                         {"features", counts.features},
-                         {"reachable", counts.reachable}});
-  return all;
+/// What became of one kind of source, as a line of the summary: only what occurred.
+std::string fates_text(const std::string& kind, const planner::FateCounts& counts) {
+  std::string text = fmt::format("{:<12}{:>7}\n", kind, counts.total);
+  for (const planner::Fate fate : planner::kFates) {
+    if (counts[fate] > 0)
+      text += fmt::format("{:>12}{:>7}  {}\n", "", counts[fate], planner::meaning_of(fate));
+  }
+  return text;
+}
+
+std::string summary_of(const planner::FeatureCounts& counts, const Counts& mesh) {
+  std::string text;
+  for (const auto& [name, count] : mesh) text += fmt::format("{:<20}{:>7}\n", name, count);
+  if (mesh.empty()) {
+    text += fates_text("edges", counts.edges) + fates_text("walls", counts.walls) +
+            fates_text("silhouettes", counts.silhouettes);
+  } else {
+    text += fates_text("contours", counts.contours);
+  }
+  return text + fmt::format("{:<12}{:>7}  in {} edgelets, {} of them visible\n{:<12}{:>7}", "features",
+                            counts.features, counts.edgelets, counts.visible, "reachable", counts.reachable);
 }
 
 bool is_known_ending(const std::string& output) {
@@ -71,17 +79,15 @@ void run_features(Context& context, const Options& options) {
   if (!scene) return context.fail(ExitCode::BadFile, scene.error().message);
 
   const planner::Features found = planner::find_features(scene->turned, task->kit.pins);
-  const auto counts = counts_of(found.counts, scene->part);
+  const Counts mesh_counts = mesh_counts_of(scene->part);
   const bool drawing = options.output.ends_with(".svg");
-  const std::string document = planner::features_json(task->name, found.features, counts);
+  const std::string document = planner::features_json(task->name, found.features, found.counts, mesh_counts);
   std::string bytes = document;
   if (drawing) {
     bytes = report::features_svg(
         {task->name, found.features, planner::outlines(scene->turned).from_below, task->kit.pins.radius_mm});
   }
-  std::string summary;
-  for (const auto& [name, count] : counts) summary += fmt::format("{:<20}{:>7}\n", name, count);
-  summary.pop_back();
+  const std::string summary = summary_of(found.counts, mesh_counts);
   if (!context.write_result(options.output, bytes)) return;
   if (options.output.empty() || options.output == "-") {
     context.note(summary);

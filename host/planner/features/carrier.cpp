@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <tuple>
+#include <utility>
 
 namespace pinjaw::planner {
 namespace {
@@ -30,7 +30,7 @@ bool lies_on(const Carrier& carrier, const PlanCurve& candidate) {
   const double length_mm = geometry::length_mm(candidate.curve);
   const auto* arc = std::get_if<geometry::Arc>(&candidate.curve);
   if (carrier.round != (arc != nullptr)) return false;
-  if (arc != nullptr && !candidate.approximate) {
+  if (arc != nullptr && candidate.error_mm <= model::kExactMm) {
     return (arc->center_mm - carrier.origin_mm).norm() <= kSameCarrierMm &&
            std::abs(arc->radius_mm - carrier.radius_mm) <= kSameCarrierMm;
   }
@@ -41,7 +41,7 @@ bool lies_on(const Carrier& carrier, const PlanCurve& candidate) {
 
 void add_piece(Carrier& carrier, const PlanCurve& candidate) {
   const auto add = [&](double lo_mm, double hi_mm) {
-    carrier.pieces.push_back({{lo_mm, hi_mm}, candidate.source, candidate.is_wall, candidate.approximate});
+    carrier.pieces.push_back({{lo_mm, hi_mm}, &candidate});
   };
   const double length_mm = geometry::length_mm(candidate.curve);
   const double from_mm = carrier.position_of(geometry::point_at(candidate.curve, 0));
@@ -58,6 +58,18 @@ void add_piece(Carrier& carrier, const PlanCurve& candidate) {
   } else {
     add(from_mm, whole_mm);
     add(0, from_mm + length_mm - whole_mm);
+  }
+}
+
+void bridge(Carrier& carrier) {
+  std::ranges::stable_sort(carrier.pieces, {}, [](const Piece& piece) { return piece.along_mm.lo; });
+  Piece* reaching = nullptr;
+  for (Piece& piece : carrier.pieces) {
+    if (reaching != nullptr) {
+      const double gap_mm = piece.along_mm.lo - reaching->along_mm.hi;
+      if (0 < gap_mm && gap_mm < kBridgedMm) reaching->along_mm.hi = piece.along_mm.lo;
+    }
+    if (reaching == nullptr || piece.along_mm.hi > reaching->along_mm.hi) reaching = &piece;
   }
 }
 
@@ -93,15 +105,12 @@ bool Carrier::covers(double along_mm, double margin_mm) const {
   });
 }
 
-const Piece* Carrier::piece_at(double along_mm) const {
-  const Piece* best = nullptr;
-  const auto rank = [](const Piece& piece) {
-    return std::tuple(piece.is_wall, piece.approximate, piece.source);
-  };
+std::vector<const PlanCurve*> Carrier::curves_at(double along_mm) const {
+  std::vector<const PlanCurve*> curves;
   for (const Piece& piece : pieces) {
-    if (piece.along_mm.contains(along_mm) && (best == nullptr || rank(piece) < rank(*best))) best = &piece;
+    if (piece.along_mm.contains(along_mm)) curves.push_back(piece.curve);
   }
-  return best;
+  return curves;
 }
 
 geometry::Curve Carrier::curve_over(const geometry::Interval& stretch_mm, FreeSide side) const {
@@ -113,13 +122,12 @@ geometry::Curve Carrier::curve_over(const geometry::Interval& stretch_mm, FreeSi
   return geometry::Segment{point_at(stretch_mm.lo), point_at(stretch_mm.hi)};
 }
 
-std::vector<Carrier> carriers_of(const std::vector<PlanCurve>& curves) {
+std::vector<Carrier> carriers_of(const Projection& projection) {
   std::vector<const PlanCurve*> longest_first;
-  longest_first.reserve(curves.size());
-  for (const PlanCurve& curve : curves) longest_first.push_back(&curve);
-  std::ranges::stable_sort(longest_first, [](const PlanCurve* a, const PlanCurve* b) {
-    return std::pair(a->approximate, -geometry::length_mm(a->curve)) <
-           std::pair(b->approximate, -geometry::length_mm(b->curve));
+  longest_first.reserve(projection.curves.size());
+  for (const PlanCurve& curve : projection.curves) longest_first.push_back(&curve);
+  std::ranges::stable_sort(longest_first, {}, [](const PlanCurve* curve) {
+    return std::pair(curve->error_mm > model::kExactMm, -geometry::length_mm(curve->curve));
   });
   std::vector<Carrier> carriers;
   for (const PlanCurve* curve : longest_first) {
@@ -128,6 +136,7 @@ std::vector<Carrier> carriers_of(const std::vector<PlanCurve>& curves) {
     if (found == carriers.end()) found = carriers.insert(carriers.end(), carrier_of(curve->curve));
     add_piece(*found, *curve);
   }
+  for (Carrier& carrier : carriers) bridge(carrier);
   return carriers;
 }
 

@@ -12,9 +12,7 @@ namespace pinjaw::planner {
 /// What a part of a carrier is covered by.
 struct Piece {
   geometry::Interval along_mm;
-  int source = 0;
-  bool is_wall = false;
-  bool approximate = false;
+  const PlanCurve* curve = nullptr;  ///< one of the projection that the carriers come from
 };
 
 /// Which side of a carrier is free, seen along its travel; a circle travels counter-clockwise, its right is
@@ -38,9 +36,8 @@ struct Carrier {
   [[nodiscard]] double distance_mm(const geometry::Vector2d& p_mm) const;
   [[nodiscard]] double circumference_mm() const;
   [[nodiscard]] bool covers(double along_mm, double margin_mm) const;
-  /// The piece that names a stretch about `along_mm`: edges before walls, exact before fitted, then the least
-  /// number.
-  [[nodiscard]] const Piece* piece_at(double along_mm) const;
+  /// The curves that cover the position.
+  [[nodiscard]] std::vector<const PlanCurve*> curves_at(double along_mm) const;
   /// The stretch as a feature's curve, directed by its free side.
   [[nodiscard]] geometry::Curve curve_over(const geometry::Interval& stretch_mm, FreeSide side) const;
 };
@@ -48,11 +45,15 @@ struct Carrier {
 /// Curves within this of one line or circle lie on it. Exported parts agree to 1e-7, real ones to about 1e-3.
 inline constexpr double kSameCarrierMm = 1e-3;
 
-std::vector<Carrier> carriers_of(const std::vector<PlanCurve>& curves);
+/// Pieces of one carrier end at most this far apart where a file's tolerance parts what is one edge. Chosen:
+/// half of eps.
+inline constexpr double kBridgedMm = model::kEps_mm / 2;
 
-/// Positions that cut carrier `which` into edgelets: ends of its pieces, crossings with the pieces of all
-/// others and with `others`, chorded. Sorted; none nearer than kSameCarrierMm to the next.
-std::vector<double> split_positions_mm(const std::vector<Carrier>& carriers, std::size_t which,
-                                       const std::vector<std::vector<geometry::Vector2d>>& others);
+/// The carriers point into `projection`, which must outlive them.
+std::vector<Carrier> carriers_of(const Projection& projection);
+
+/// Positions that cut carrier `which` into edgelets: ends of its pieces and crossings with the pieces of all
+/// others. Sorted; none nearer than kSameCarrierMm to the next.
+std::vector<double> split_positions_mm(const std::vector<Carrier>& carriers, std::size_t which);
 
 }  // namespace pinjaw::planner

@@ -58,15 +58,6 @@ Points crossings(const Carrier& a, const Carrier& b) {
   return points;
 }
 
-Carrier chord_carrier(const Vector2d& from_mm, const Vector2d& to_mm) {
-  Carrier chord;
-  chord.origin_mm = from_mm;
-  const double length_mm = (to_mm - from_mm).norm();
-  chord.along = (to_mm - from_mm) / length_mm;
-  chord.pieces.push_back({.along_mm = {0, length_mm}});
-  return chord;
-}
-
 /// A cut and whether it is the end of a piece, which is exact where a crossing is rounded.
 struct Cut {
   double along_mm;
@@ -78,13 +69,6 @@ void add_crossings(const Carrier& carrier, const Carrier& other, std::vector<Cut
     const double along_mm = carrier.position_of(p);
     if (!other.covers(other.position_of(p), kSameCarrierMm)) continue;
     if (carrier.covers(along_mm, kSameCarrierMm)) cuts.push_back({along_mm, false});
-  }
-}
-
-void add_chord_crossings(const Carrier& carrier, const Points& chords, std::vector<Cut>& cuts) {
-  for (std::size_t i = 1; i < chords.size(); ++i) {
-    if ((chords[i] - chords[i - 1]).norm() <= kSameCarrierMm) continue;
-    add_crossings(carrier, chord_carrier(chords[i - 1], chords[i]), cuts);
   }
 }
 
@@ -107,8 +91,7 @@ std::vector<double> thinned(std::vector<Cut> cuts) {
 
 }  // namespace
 
-std::vector<double> split_positions_mm(const std::vector<Carrier>& carriers, std::size_t which,
-                                       const std::vector<Points>& others) {
+std::vector<double> split_positions_mm(const std::vector<Carrier>& carriers, std::size_t which) {
   const Carrier& carrier = carriers[which];
   std::vector<Cut> cuts;
   for (const Piece& piece : carrier.pieces) {
@@ -118,7 +101,6 @@ std::vector<double> split_positions_mm(const std::vector<Carrier>& carriers, std
   for (std::size_t i = 0; i < carriers.size(); ++i) {
     if (i != which) add_crossings(carrier, carriers[i], cuts);
   }
-  for (const Points& chords : others) add_chord_crossings(carrier, chords, cuts);
   return thinned(std::move(cuts));
 }
 

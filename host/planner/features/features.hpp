@@ -6,22 +6,22 @@
 #include "host/model/kit.hpp"
 #include "host/model/tolerance.hpp"
 #include "host/part/part.hpp"
+#include "host/planner/features/fate.hpp"
 
 namespace pinjaw::planner {
 
-/// Where the edges of a part went in phase 1.
+/// Where the edges, walls and silhouettes of a part went in phase 1, and how many pieces of them it looked
+/// at.
 struct FeatureCounts {
-  int candidates = 0;         ///< edges and walls that project to a line or circular arc
-  int left_out_upright = 0;   ///< project to a point
-  int left_out_tilted = 0;    ///< ellipses that do not project to circular arcs
-  int left_out_freeform = 0;  ///< neither line nor circle nor ellipse
-  int left_out_gentle = 0;    ///< of a mesh: folded between two sides of which none is steep
-  int left_out_jagged = 0;    ///< of a mesh: silhouettes that no line or arc follows
-  int edgelets = 0;           ///< pieces between intersections, duplicates once
-  int visible = 0;            ///< edgelets with some length that jumps by the engagement
-  int too_short = 0;          ///< joined stretches shorter than eps, left out
-  int features = 0;           ///< after adjacent survivors are joined
-  int reachable = 0;          ///< features with room for a closed pin somewhere
+  FateCounts edges;  ///< all edges of the file, or of the profile
+  FateCounts walls;
+  FateCounts silhouettes;
+  FateCounts contours;  ///< of a mesh, which has nothing else: its chained and fitted edges
+  int edgelets = 0;     ///< pieces between intersections, coincident ones once
+  int visible = 0;      ///< edgelets with some length that jumps by the engagement
+  int too_short = 0;    ///< joined stretches shorter than eps, left out
+  int features = 0;     ///< after adjacent survivors are joined
+  int reachable = 0;    ///< features with room for a closed pin somewhere
   friend bool operator==(const FeatureCounts&, const FeatureCounts&) = default;
 };
 

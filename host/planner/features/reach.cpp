@@ -40,6 +40,15 @@ struct Level {
   double z_edge_mm;
 };
 
+/// As phase 3 has it: the lowest surface eps inside the foot, or the silhouette there (DESIGN 3.1 no. 2).
+double z_edge_mm(const model::Feature& feature, double along_mm, const geometry::Surface& surface) {
+  const Vector2d foot_mm = geometry::point_at(feature.curve, along_mm);
+  const Vector2d inside_mm = foot_mm - model::kEps_mm * model::outward_normal_at(feature, along_mm);
+  const auto hit = surface.lowest_above(inside_mm);
+  if (!hit) return surface.z_range_mm().hi;
+  return surface.silhouette_z_mm(foot_mm, hit->point_mm.z(), 2 * model::kEps_mm).value_or(hit->point_mm.z());
+}
+
 std::vector<Level> levels_of(const model::Feature& feature, const std::vector<double>& breaks_mm,
                              const geometry::Surface& surface) {
   const double length_mm = geometry::length_mm(feature.curve);
@@ -56,10 +65,7 @@ std::vector<Level> levels_of(const model::Feature& feature, const std::vector<do
       const double lo_mm = whole.lo + step * whole.length() / steps;
       const double hi_mm = whole.lo + (step + 1) * whole.length() / steps;
       const double middle_mm = (lo_mm + hi_mm) / 2;
-      const Vector2d inside_mm = geometry::point_at(feature.curve, middle_mm) -
-                                 model::kEps_mm * model::outward_normal_at(feature, middle_mm);
-      const auto hit = surface.lowest_above(inside_mm);
-      const double z_mm = hit ? hit->point_mm.z() : surface.z_range_mm().hi;
+      const double z_mm = z_edge_mm(feature, middle_mm, surface);
       if (!levels.empty() && std::abs(levels.back().z_edge_mm - z_mm) < kSameHeightMm) {
         levels.back().along_mm.hi = hi_mm;
       } else {

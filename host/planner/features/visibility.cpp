@@ -8,6 +8,8 @@
 namespace pinjaw::planner {
 namespace {
 
+using geometry::Vector2d;
+
 constexpr double kSampleStepMm = 0.25;  // chosen: edges split elsewhere; only curved faces change in between
 constexpr double kCutMm = 1e-5;
 
@@ -72,6 +74,22 @@ std::vector<Stretch> jumping_stretches(const geometry::Surface& surface, const C
   }
   if (side != FreeSide::None) stretches.push_back({{from_mm, edgelet_mm.hi}, side});
   return stretches;
+}
+
+Fate why_no_stretch(const geometry::Surface& surface, const Carrier& carrier,
+                    const geometry::Interval& edgelet_mm, double z_mm) {
+  // Chosen: the lowest surface lies that much lower beside an edge only where it is steeper than 84 degrees.
+  constexpr double kBelowMm = 10 * model::kEps_mm;
+  // Chosen: what leans by up to 45 degrees runs on.
+  constexpr double kFlatMm = 2 * model::kEps_mm;
+  const double middle_mm = (edgelet_mm.lo + edgelet_mm.hi) / 2;
+  const Vector2d p_mm = carrier.point_at(middle_mm);
+  const Vector2d aside_mm = model::kEps_mm * carrier.right_at(middle_mm);
+  const double right_mm = lowest_z_mm(surface, p_mm + aside_mm);
+  const double left_mm = lowest_z_mm(surface, p_mm - aside_mm);
+  if (std::isinf(right_mm) && std::isinf(left_mm)) return Fate::OffSurface;
+  if (std::max(right_mm, left_mm) < z_mm - kBelowMm) return Fate::Hidden;
+  return std::abs(right_mm - left_mm) <= kFlatMm ? Fate::InFlat : Fate::LowStep;
 }
 
 std::vector<Stretch> joined(const std::vector<Stretch>& stretches, const Carrier& carrier) {

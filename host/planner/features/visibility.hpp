@@ -22,6 +22,11 @@ struct Stretch {
 std::vector<Stretch> jumping_stretches(const geometry::Surface& surface, const Carrier& carrier,
                                        const geometry::Interval& edgelet_mm, double engagement_mm);
 
+/// Why an edgelet without such a stretch has none, looked at in its middle, where the lowest of its curves is
+/// at `z_mm`: OffSurface, Hidden, InFlat or LowStep.
+Fate why_no_stretch(const geometry::Surface& surface, const Carrier& carrier,
+                    const geometry::Interval& edgelet_mm, double z_mm);
+
 /// Adjacent stretches with the same free side as one, across angle 0 of a circle too, where the joined
 /// stretch ends beyond the circumference.
 std::vector<Stretch> joined(const std::vector<Stretch>& stretches, const Carrier& carrier);

@@ -19,11 +19,11 @@ struct PinHeight {
   double contact_min_mm = 0;  ///< lowest part surface over a pin eps thicker (up-large)
   double height_max_mm = 0;   ///< lowest part surface over a pin eps thinner (up-small); +inf at a silhouette
   double contact_max_mm = 0;  ///< highest part surface under height_max over a pin eps thicker (down-large)
-  double z_edge_mm = 0;       ///< lowest part surface eps inside the foot
-  double top_mm = 0;          ///< of the pin
-  double length_mm = 0;       ///< from the plate to the top
-  model::Interval
-      contact_z_mm;  ///< part surface within 2 eps of the foot, below top; one point where lo == hi
+  double z_edge_mm = 0;  ///< lowest part surface eps inside the foot; a silhouette's height where it is one
+  double top_mm = 0;     ///< of the pin
+  double length_mm = 0;  ///< from the plate to the top
+  model::Interval contact_z_mm;  ///< part surface within 2 eps of the foot, below top; one point where lo ==
+                                 ///< hi, as at a silhouette
 };
 
 /// Why a pin has no height.

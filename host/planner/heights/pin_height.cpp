@@ -54,6 +54,12 @@ model::Interval contact_z_mm(const Surface& part, const Foot& foot, double top_m
   return {middle_mm, middle_mm};
 }
 
+/// Where a pin touches at a height found near its foot: at the silhouette that passes there, if the height is
+/// its bulge's.
+double touched_mm(const Surface& part, const Foot& foot, double z_mm) {
+  return part.silhouette_z_mm(foot.p_PFoot_mm, z_mm, 2 * model::kEps_mm).value_or(z_mm);
+}
+
 }  // namespace
 
 PinHeightOutcome pin_height(const Surface& part, const model::PinStock& pins, double plate_top_mm,
@@ -61,7 +67,7 @@ PinHeightOutcome pin_height(const Surface& part, const model::PinStock& pins, do
   const auto edge = part.lowest_above(foot.p_PFoot_mm + model::kEps_mm * foot.n_P);
   if (!edge) return tl::unexpected(HeightLoss::NoSurfaceAtFoot);
   PinHeight pin = probe(part, pins, foot);
-  pin.z_edge_mm = edge->point_mm.z();
+  pin.z_edge_mm = touched_mm(part, foot, edge->point_mm.z());
   const double least_mm = pin.z_edge_mm + pins.min_engagement_mm - kRounding_mm;
   const double most_mm =
       std::min(pin.contact_max_mm + pins.protrusion_mm, pin.height_max_mm - pins.clearance_mm);
@@ -74,6 +80,8 @@ PinHeightOutcome pin_height(const Surface& part, const model::PinStock& pins, do
   if (pin.top_mm < least_mm) return tl::unexpected(HeightLoss::StockTooShort);
 
   pin.contact_z_mm = contact_z_mm(part, foot, pin.top_mm);
+  pin.contact_z_mm = {touched_mm(part, foot, pin.contact_z_mm.lo),
+                      touched_mm(part, foot, pin.contact_z_mm.hi)};
   if (pin.contact_z_mm.lo > pin.contact_z_mm.hi) return tl::unexpected(HeightLoss::NoSurfaceAtFoot);
   return pin;
 }

@@ -18,14 +18,17 @@ namespace {
 
 using Outcome = std::variant<model::Design, HeightLoss, LoadingLoss>;
 
-void count_features(const FeatureCounts& counts, Losses& losses) {
-  auto& of_phase = losses["features"];
-  of_phase["upright edge"] = counts.left_out_upright;
-  of_phase["tilted curve"] = counts.left_out_tilted;
-  of_phase["freeform curve"] = counts.left_out_freeform;
-  of_phase["gentle fold of a mesh"] = counts.left_out_gentle;
-  of_phase["jagged silhouette of a mesh"] = counts.left_out_jagged;
-  of_phase["no room for a pin"] = counts.features - counts.reachable;
+/// Edges, walls and silhouettes that became no feature with room for a pin, by what became of them.
+void count_features(const FeatureCounts& counts, const part::Part& part, Losses& losses) {
+  for (const Fate fate : kFates) {
+    if (fate == Fate::Kept) continue;
+    losses["features"][std::string(meaning_of(fate))] =
+        counts.edges[fate] + counts.walls[fate] + counts.silhouettes[fate] + counts.contours[fate];
+  }
+  if (!part.mesh_counts) return;
+  losses["features"]["upright edge of a mesh"] = part.contour_counts.upright;
+  losses["features"]["gentle fold of a mesh"] = part.contour_counts.gentle;
+  losses["features"]["jagged silhouette of a mesh"] = part.contour_counts.jagged;
 }
 
 /// Fixtures that are held as designs at once: enough to keep all threads busy between two meetings.
@@ -107,7 +110,7 @@ base::Expected<CandidateCounts> find_candidates(const model::Task& task, const S
   if (progress) progress({"features", 0, 0});
   const Features features = find_features(scene.turned, task.kit.pins);
   counts.funnel.features = static_cast<std::int64_t>(features.features.size());
-  count_features(features.counts, counts.losses);
+  count_features(features.counts, scene.turned, counts.losses);
 
   constexpr std::int64_t kParts = 1000;
   PlanarOptions planar;

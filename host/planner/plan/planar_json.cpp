@@ -51,6 +51,12 @@ ordered_json curve_json(const geometry::Curve& curve) {
             {"sweep_deg", arc.sweep_rad / kDegree}}}};
 }
 
+ordered_json fates_json(const FateCounts& counts) {
+  ordered_json result = {{"total", counts.total}};
+  for (const Fate fate : kFates) result[std::string(to_string(fate))] = counts[fate];
+  return result;
+}
+
 }  // namespace
 
 std::string to_json(const std::vector<PlanarFixture>& fixtures, const std::vector<model::Feature>& features,
@@ -63,9 +69,21 @@ std::string to_json(const std::vector<PlanarFixture>& fixtures, const std::vecto
 }
 
 std::string features_json(const std::string& task, const std::vector<model::Feature>& features,
-                          const std::vector<std::pair<std::string, int>>& counts) {
-  ordered_json document = {{"format", "pinjaw-features/1"}, {"task", task}};
-  for (const auto& [name, count] : counts) document["counts"][name] = count;
+                          const FeatureCounts& counts,
+                          const std::vector<std::pair<std::string, int>>& mesh_counts) {
+  ordered_json document = {{"format", "pinjaw-features/1"},
+                           {"task", task},
+                           {"counts",
+                            {{"edges", fates_json(counts.edges)},
+                             {"walls", fates_json(counts.walls)},
+                             {"silhouettes", fates_json(counts.silhouettes)},
+                             {"contours", fates_json(counts.contours)},
+                             {"edgelets", counts.edgelets},
+                             {"visible", counts.visible},
+                             {"too_short", counts.too_short},
+                             {"features", counts.features},
+                             {"reachable", counts.reachable}}}};
+  for (const auto& [name, count] : mesh_counts) document["mesh"][name] = count;
   document["features"] = ordered_json::array();
   for (const model::Feature& feature : features) {
     ordered_json reach = ordered_json::array();
@@ -73,7 +91,8 @@ std::string features_json(const std::string& task, const std::vector<model::Feat
     ordered_json entry = {{"id", feature.id},
                           {"edge", feature.edge},
                           {"free_side", feature.bulge == model::Bulge::Convex ? "outside" : "inside"},
-                          {"approximate", feature.approximate},
+                          {"approximate", model::is_approximate(feature)},
+                          {"error_mm", feature.error_mm},
                           {"reach_mm", reach}};
     entry.update(curve_json(feature.curve));
     document["features"].push_back(std::move(entry));

@@ -5,6 +5,7 @@
 
 #include "host/model/feature.hpp"
 #include "host/model/kit.hpp"
+#include "host/planner/features/features.hpp"
 #include "host/planner/planar/planar_fixture.hpp"
 
 namespace pinjaw::planner {
@@ -14,8 +15,10 @@ namespace pinjaw::planner {
 std::string to_json(const std::vector<PlanarFixture>& fixtures, const std::vector<model::Feature>& features,
                     const model::Kit& kit);
 
-/// `pinjaw-features/1`: the features of a part as its gripper sees it, with what was left out and why.
+/// `pinjaw-features/1`: the features of a part as its gripper sees it, with what was left out and why, and
+/// what was read of a mesh, if it was one.
 std::string features_json(const std::string& task, const std::vector<model::Feature>& features,
-                          const std::vector<std::pair<std::string, int>>& counts);
+                          const FeatureCounts& counts,
+                          const std::vector<std::pair<std::string, int>>& mesh_counts);
 
 }  // namespace pinjaw::planner

@@ -20,6 +20,7 @@ base::Expected<part::Part> read(model::PartSource source, const part::Selection&
 /// The part with its surface at `pose` and `z_mm` in the part frame.
 geometry::Surface placed(const part::Part& part, const model::Obstacle& at) {
   geometry::TriangleMesh mesh = part.surface.mesh();
+  mesh.silhouettes.clear();  // nothing grips an obstacle
   for (geometry::Vector3d& p_mm : mesh.vertices_mm) {
     const geometry::Vector2d plan = at.pose * geometry::Vector2d(p_mm.head<2>());
     p_mm = {plan.x(), plan.y(), p_mm.z() + at.z_mm};

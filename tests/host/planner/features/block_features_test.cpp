@@ -41,8 +41,12 @@ TEST(BlockFeatures, are_its_four_sides_once_with_the_material_on_the_left) {
     const Vector2d to_middle = Vector2d(15, 10) - trace.middle_mm;
     EXPECT_LT(trace.normal.dot(to_middle), 0) << feature.id;
   }
-  EXPECT_EQ(found.counts.candidates, 8 + 4);
-  EXPECT_EQ(found.counts.left_out_upright, 4);
+  EXPECT_EQ(found.counts.edges.total, 12);
+  EXPECT_EQ(found.counts.edges[Fate::Upright], 4);
+  EXPECT_EQ(found.counts.edges[Fate::Kept], 4);
+  EXPECT_EQ(found.counts.edges[Fate::Coincident], 4);  // those of the top
+  EXPECT_EQ(found.counts.walls.total, 4);
+  EXPECT_EQ(found.counts.silhouettes.total, 0);
   EXPECT_EQ(found.counts.edgelets, 4);
   EXPECT_EQ(found.counts.visible, 4);
 }
@@ -53,7 +57,7 @@ TEST(BlockFeatures, lie_on_the_block_exactly) {
     for (const Vector2d& p : {segment.a_mm, segment.b_mm}) {
       EXPECT_TRUE((p.x() == 0 || p.x() == 30) && (p.y() == 0 || p.y() == 20)) << p.transpose();
     }
-    EXPECT_FALSE(feature.approximate);
+    EXPECT_FALSE(model::is_approximate(feature));
   }
 }
 

@@ -57,23 +57,11 @@ T must(base::Expected<T> value) {
 }  // namespace
 
 part::Part part_of(const part::Shape& shape, const Eigen::Matrix3d& rotation) {
-  auto edges = must(part::edges_of(shape));
-  for (part::EdgeCurve& edge : edges.edges) edge.curve = part::rotated(edge.curve, rotation);
-  auto mesh = part::rotated(must(part::mesh_of(shape, part::kMostTriangles)).mesh, rotation);
-  auto walls = part::walls_of(must(part::wall_faces_of(shape)), rotation, mesh);
-  const auto mass = must(part::mass_of(shape));
-  return {.name = "made",
-          .file = {},
-          .sha256 = {},
-          .surface = geometry::Surface(std::move(mesh)),
-          .edges = std::move(edges.edges),
-          .walls = std::move(walls),
-          .contours = {},
-          .edge_counts = edges.counts,
-          .solids = {},
-          .volume_mm3 = mass.volume_mm3,
-          .centroid_mm = rotation * mass.centroid_mm,
-          .profile = {}};
+  part::Part part = part::placed(
+      must(part::values_of({{"made", shape}}, {{"made", shape}}, rotation.transpose() * Vector3d::UnitZ())),
+      rotation);
+  part.name = "made";
+  return part;
 }
 
 part::Shape boxes(const std::vector<Box3>& parts) {
