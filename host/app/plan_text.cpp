@@ -83,13 +83,16 @@ std::string losses_text(const planner::Plan& plan) {
 
 std::string designs_text(const planner::Plan& plan, std::size_t at_most) {
   if (plan.designs.empty()) return "no design holds the part\n";
-  std::string text = fmt::format("{:<10} {:>5} {:>9} {:>9}  {:<12} pins\n", "design", "split", "squeeze N",
-                                 "margin N", "critical");
-  for (std::size_t i = 0; i < std::min(at_most, plan.designs.size()); ++i) {
+  const std::size_t shown = std::min(at_most, plan.designs.size());
+  std::size_t width = 12;
+  for (std::size_t i = 0; i < shown; ++i) width = std::max(width, plan.designs[i].squeeze.critical.size());
+  std::string text = fmt::format("{:<10} {:>5} {:>9} {:>9}  {:<{}} pins\n", "design", "split", "squeeze N",
+                                 "margin N", "critical", width);
+  for (std::size_t i = 0; i < shown; ++i) {
     const model::Design& design = plan.designs[i];
-    text += fmt::format("{:<10} {:>5} {:>9.1f} {:>9.1f}  {:<12}{}\n", design.id,
+    text += fmt::format("{:<10} {:>5} {:>9.1f} {:>9.1f}  {:<{}}{}\n", design.id,
                         model::to_string(design.split), design.squeeze.required_n, design.squeeze.margin_n,
-                        design.squeeze.critical, pins_text(design));
+                        design.squeeze.critical, width, pins_text(design));
   }
   if (plan.designs.size() > at_most) text += fmt::format("… and {} more\n", plan.designs.size() - at_most);
   return text;

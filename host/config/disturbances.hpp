@@ -14,8 +14,7 @@ struct DisturbanceLists {
 };
 
 /// Reads both lists. Unnamed disturbances are named after their kind (`spray`, then `spray-2`); a name stands
-/// for one disturbance only. `always` takes single loads: no spray, and no acceleration along several
-/// directions.
+/// for one disturbance only. `always` takes no spray.
 DisturbanceLists read_disturbances(base::YamlMap& task);
 
 }  // namespace pinjaw::config

@@ -86,6 +86,24 @@ std::vector<std::string> Materials::names() const {
   return names;
 }
 
+std::string Materials::no_such_material(const std::string& name) const {
+  return fmt::format("no material \"{}\" in {}{}; known: {}", name, source, base::did_you_mean(name, names()),
+                     fmt::join(names(), ", "));
+}
+
+std::string Materials::no_such_pair(const std::string& one, const std::string& other) const {
+  std::vector<std::string> known;
+  for (const FrictionPair& pair : pairs) {
+    const bool has_either =
+        pair.first == one || pair.first == other || pair.second == one || pair.second == other;
+    if (has_either) known.push_back(pair.first + " on " + pair.second);
+  }
+  const bool both_known = density_g_cm3(one) && density_g_cm3(other);
+  const std::string hint = both_known ? "" : base::did_you_mean(other, names());
+  return fmt::format("{} has no friction of {} on {}{}; known of these: {}", source, one, other, hint,
+                     known.empty() ? "none" : fmt::format("{}", fmt::join(known, ", ")));
+}
+
 base::Checked<Materials> read_materials(const std::filesystem::path& path) {
   return read_table(base::YamlFile(path));
 }

@@ -30,6 +30,11 @@ struct Materials {
   [[nodiscard]] std::optional<double> density_g_cm3(const std::string& name) const;
   [[nodiscard]] std::optional<double> static_friction(const std::string& one, const std::string& other) const;
   [[nodiscard]] std::vector<std::string> names() const;
+
+  /// What to tell of a name that is no material: the nearest one, and all that are known.
+  [[nodiscard]] std::string no_such_material(const std::string& name) const;
+  /// What to tell of a pair without a coefficient: the pairs that one of the two has.
+  [[nodiscard]] std::string no_such_pair(const std::string& one, const std::string& other) const;
 };
 
 base::Checked<Materials> read_materials(const std::filesystem::path& path);

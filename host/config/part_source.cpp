@@ -44,8 +44,7 @@ void read_mass(YamlMap& map, const Materials& materials, model::PartSource& part
     part.material = material->text("a material").value_or("");
     part.density_g_cm3 = materials.density_g_cm3(part.material);
     if (!part.density_g_cm3 && !part.material.empty()) {
-      const std::string hint = base::did_you_mean(part.material, materials.names());
-      material->mistake(fmt::format("no material \"{}\" in {}{}", part.material, materials.source, hint));
+      material->mistake(materials.no_such_material(part.material));
     }
   }
   if (mass && material) map.mistake_at_key("mass_kg", "expected either mass_kg or material, found both");

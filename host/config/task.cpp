@@ -47,10 +47,7 @@ double coefficient(const FrictionSource& friction, const std::string& material, 
   }
   const auto found = materials.static_friction(material, friction.pins);
   if (found) return *found;
-  const bool both_known = materials.density_g_cm3(friction.pins) && materials.density_g_cm3(material);
-  const std::string hint = both_known ? "" : base::did_you_mean(friction.pins, materials.names());
-  friction.at->mistake(
-      fmt::format("{} has no friction of {} on {}{}", materials.source, material, friction.pins, hint));
+  friction.at->mistake(materials.no_such_pair(material, friction.pins));
   return 0;
 }
 

@@ -2,85 +2,101 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
+#include <algorithm>
 #include <map>
+#include <type_traits>
+
+#include "host/planner/force/source_loads.hpp"
 
 namespace pinjaw::planner {
 namespace {
 
-using geometry::Vector3d;
 using model::Disturbance;
 using model::Wrench;
 using Loads = base::Expected<std::vector<Disturbance>>;
 
-constexpr double kStandardGravity = 9.80665;  // m/s2, by definition, CGPM 1901
+constexpr std::size_t kMostLoads = 1'000'000;  // chosen: some 100 MB, and minutes for a thousand fixtures
 
-Wrench force_at(const Vector3d& p_mm, const Vector3d& force_n) {
-  Wrench wrench;
-  wrench << force_n, p_mm.cross(force_n);
-  return wrench;
+/// Both at once, told by both names; a name left empty says nothing.
+Disturbance both(const Disturbance& one, const Disturbance& other) {
+  const char* between = one.name.empty() || other.name.empty() ? "" : " with ";
+  return {one.name + between + other.name, one.wrench + other.wrench};
 }
 
-std::string named(const std::string& name, const char* kind) {
-  return name.empty() ? kind : name;
+/// One load for each choice of one from each list.
+std::vector<Disturbance> choices(const std::vector<Disturbance>& ones,
+                                 const std::vector<Disturbance>& others) {
+  std::vector<Disturbance> all;
+  all.reserve(ones.size() * others.size());
+  for (const Disturbance& one : ones) {
+    for (const Disturbance& other : others) all.push_back(both(one, other));
+  }
+  return all;
 }
 
-/// `+z` along an axis, else the direction's unit components.
-std::string label_of(const Vector3d& direction) {
-  const Vector3d unit = direction.normalized();
-  constexpr double kOnAxis = 1e-9;
-  for (int k = 0; k < 3; ++k) {
-    if (std::abs(unit[k]) > 1 - kOnAxis) return fmt::format("{}{}", unit[k] > 0 ? '+' : '-', "xyz"[k]);
-  }
-  return fmt::format("{:.3g},{:.3g},{:.3g}", unit.x(), unit.y(), unit.z());
+Loads named_loads(const model::SingleSource& source, const Body& body) {
+  const auto loads = loads_of(source, body);
+  if (!loads) return tl::unexpected(loads.error());
+  std::vector<Disturbance> all;
+  for (const SourceLoad& load : *loads) all.push_back({full_name(name_of(source), load.label), load.wrench});
+  return all;
 }
 
-/// The loads of one source, each with the name it is told by.
-struct LoadsOf {
-  const Body& body;
-
-  Loads operator()(const model::Gravity& gravity) const {
-    if (body.mass_kg <= 0) return base::failure("gravity needs the part's mass: give a material or mass_kg");
-    const Vector3d weight_n = body.mass_kg * kStandardGravity * gravity.direction.normalized();
-    return std::vector<Disturbance>{{named(gravity.name, "gravity"), force_at(body.centroid_mm, weight_n)}};
+/// The loads of sources that act at the same time; one without wrench where there are none.
+Loads simultaneous(const std::vector<model::SingleSource>& sources, const Body& body) {
+  std::vector<Disturbance> all = {{"", Wrench::Zero()}};
+  for (const model::SingleSource& source : sources) {
+    const Loads loads = named_loads(source, body);
+    if (!loads) return loads;
+    all = choices(all, *loads);
   }
+  return all;
+}
 
-  Loads operator()(const model::Acceleration& acceleration) const {
-    if (body.mass_kg <= 0) {
-      return base::failure("an acceleration needs the part's mass: give a material or mass_kg");
-    }
-    std::vector<Disturbance> loads;
-    const std::string name = named(acceleration.name, "acceleration");
-    const double force_n = body.mass_kg * acceleration.peak_g * kStandardGravity;
-    for (const Vector3d& along : acceleration.along) {
-      loads.push_back({fmt::format("{}[{}]", name, label_of(along)),
-                       force_at(body.centroid_mm, force_n * along.normalized())});
-    }
-    return loads;
-  }
-
-  Loads operator()(const model::Spray& spray) const {
-    if (body.surface == nullptr) return base::failure("a spray needs the part's surface");
-    const auto hits = spray_hits(spray, *body.surface);
-    if (!hits) return tl::unexpected(hits.error());
-    std::vector<Disturbance> loads;
-    const std::string name = named(spray.name, "spray");
-    for (const SprayHit& hit : *hits) {
-      loads.push_back({fmt::format("{}[{}]", name, loads.size()), force_at(hit.p_mm, hit.force_n)});
-    }
-    return loads;
-  }
-
-  Loads operator()(const model::PointForce& force) const {
-    return std::vector<Disturbance>{{named(force.name, "force"), force_at(force.at_mm, force.force_n)}};
-  }
-
-  Loads operator()(const model::PlainWrench& plain) const {
-    Wrench wrench;
-    wrench << plain.force_n, plain.torque_nmm;
-    return std::vector<Disturbance>{{named(plain.name, "wrench"), wrench}};
-  }
+/// A source as the list of those that act at the same time, and the name of that list where it has one.
+struct Group {
+  std::string name;
+  std::vector<model::SingleSource> of;
 };
+
+Group group_of(const model::DisturbanceSource& source) {
+  if (const auto* together = std::get_if<model::Together>(&source))
+    return {together->name.empty() ? "together" : together->name, together->of};
+  Group group;
+  std::visit(
+      [&](const auto& each) {
+        if constexpr (!std::is_same_v<std::decay_t<decltype(each)>, model::Together>) group.of = {each};
+      },
+      source);
+  return group;
+}
+
+Loads loads_of_group(const Group& group, const Body& body) {
+  Loads loads = simultaneous(group.of, body);
+  if (loads && !group.name.empty()) {
+    for (Disturbance& load : *loads) load.name = full_name(group.name, load.name);
+  }
+  return loads;
+}
+
+std::size_t count_of_group(const Group& group) {
+  std::size_t count = 1;
+  for (const model::SingleSource& source : group.of)
+    count = std::min(kMostLoads + 1, count * std::min(kMostLoads, count_of(source)));
+  return count;
+}
+
+/// What acts always: each of its states with each disturbance. Where there is but one state it goes unnamed.
+Loads always_of(const model::Task& task, const Body& body) {
+  std::vector<Disturbance> states = {{"", Wrench::Zero()}};
+  for (const model::DisturbanceSource& source : task.always) {
+    const Loads loads = loads_of_group(group_of(source), body);
+    if (!loads) return loads;
+    states = choices(states, *loads);
+  }
+  if (states.size() == 1) states.front().name.clear();
+  return states;
+}
 
 /// Several loads of one source share their source's number: `spray[3]`, then `spray#2[3]`.
 void tell_apart(std::vector<Disturbance>& loads, std::map<std::string, int>& seen) {
@@ -91,32 +107,58 @@ void tell_apart(std::vector<Disturbance>& loads, std::map<std::string, int>& see
   for (Disturbance& load : loads) load.name.insert(base.size(), fmt::format("#{}", number));
 }
 
+base::Expected<void> refuse_too_many(const model::Task& task) {
+  std::size_t states = 1;
+  for (const model::DisturbanceSource& source : task.always)
+    states = std::min(kMostLoads + 1, states * count_of_group(group_of(source)));
+  std::size_t loads = 0;
+  for (const model::DisturbanceSource& source : task.disturbances)
+    loads = std::min(kMostLoads + 1, loads + count_of_group(group_of(source)));
+  if (std::max<std::size_t>(1, loads) * states <= kMostLoads) return {};
+  return base::failure(
+      fmt::format("the disturbances, each with each state of always, are more than {} loads", kMostLoads));
+}
+
 }  // namespace
 
 base::Expected<std::vector<Disturbance>> disturbances_of(const model::Task& task, const Body& body) {
-  Wrench always = Wrench::Zero();
-  for (const model::DisturbanceSource& source : task.always) {
-    Loads loads = std::visit(LoadsOf{body}, source);
-    if (!loads) return loads;
-    if (loads->size() != 1) {
-      return base::failure(
-          "always: a source of several loads cannot act all at once; list it under disturbances");
-    }
-    always += loads->front().wrench;
-  }
+  if (const auto few = refuse_too_many(task); !few) return tl::unexpected(few.error());
+  const Loads always = always_of(task, body);
+  if (!always) return always;
   std::vector<Disturbance> all;
   std::map<std::string, int> seen;
   for (const model::DisturbanceSource& source : task.disturbances) {
-    Loads loads = std::visit(LoadsOf{body}, source);
+    Loads loads = loads_of_group(group_of(source), body);
     if (!loads) return loads;
     tell_apart(*loads, seen);
-    for (Disturbance& load : *loads) {
-      load.wrench += always;
-      all.push_back(std::move(load));
-    }
+    for (Disturbance& load : choices(*loads, *always)) all.push_back(std::move(load));
   }
-  if (all.empty() && !task.always.empty()) all.push_back({"always", always});
+  if (all.empty() && !task.always.empty()) {
+    all = *always;
+    if (all.size() == 1) all.front().name = "always";
+  }
   return all;
+}
+
+base::Expected<std::vector<Jet>> jets_of(const model::Task& task, const Body& body) {
+  const Loads always = always_of(task, body);
+  if (!always) return tl::unexpected(always.error());
+  std::vector<Jet> jets;
+  for (const model::DisturbanceSource& source : task.disturbances) {
+    Group group = group_of(source);
+    const auto is_spray = [](const model::SingleSource& each) {
+      return std::holds_alternative<model::Spray>(each);
+    };
+    const auto found = std::find_if(group.of.begin(), group.of.end(), is_spray);
+    if (found == group.of.end()) continue;
+    const auto spray = std::get<model::Spray>(*found);
+    const std::string name = group.name.empty() ? name_of(*found) : group.name;
+    group.of.erase(found);
+    const Loads others = simultaneous(group.of, body);
+    if (!others) return tl::unexpected(others.error());
+    jets.push_back({name, spray, choices(*others, *always)});
+  }
+  return jets;
 }
 
 Wrench turned(const Wrench& wrench, model::Side side) {

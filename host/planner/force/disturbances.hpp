@@ -15,16 +15,29 @@ struct Body {
   const geometry::Surface* surface = nullptr;  ///< for spray rays; may be null where no spray is named
 };
 
-/// The wrenches of a task, in the part frame about its origin, the sum of `always` added to each.
+/// The wrenches of a task, in the part frame about its origin, what acts `always` added to each: where that
+/// has several states (gravity in several poses), each of them in turn.
 ///
 /// Names: the source's name, or its kind; sources that stand for several loads add `[17]` or `[+z]`; equal
-/// names are told apart by a number. A spray's sample depends on its seed and the body alone, so stations
-/// that name the same spray get the same sample (DESIGN 3.1, 10). With `always` alone, the one disturbance is
-/// called `always`. Fails where `always` holds a source of several loads, where a weight is asked of a body
-/// without mass, or a spray whose rays do not find the part.
+/// names are told apart by a number; loads that act together are told as `drill[thrust] with gravity[+z]`. A
+/// spray's sample depends on its seed and the body alone, so stations that name the same spray get the same
+/// sample (DESIGN 3.1, 10). With `always` alone, its states are the disturbances, a single one called
+/// `always`. Fails where a weight is asked of a body without mass, a spray's rays do not find the part, or
+/// the loads are more than a million.
 base::Expected<std::vector<model::Disturbance>> disturbances_of(const model::Task& task, const Body& body);
 
-/// One load of a source and the suffix of its name.
+/// A spray of a task, and everything that may act together with it: one of `with` at a time, its wrench about
+/// the part frame's origin, unnamed where it is the only one.
+struct Jet {
+  std::string name;  ///< as its loads are named, before the bracket
+  model::Spray spray;
+  std::vector<model::Disturbance> with;
+};
+
+/// The sprays of a task, in its order. Fails as disturbances_of() does.
+base::Expected<std::vector<Jet>> jets_of(const model::Task& task, const Body& body);
+
+/// Where a jet hits, and its force.
 struct SprayHit {
   geometry::Vector3d p_mm = geometry::Vector3d::Zero();
   geometry::Vector3d force_n = geometry::Vector3d::Zero();

@@ -10,6 +10,7 @@ namespace pinjaw::planner {
 namespace {
 
 using geometry::Vector3d;
+using model::Wrench;
 using testing::ElementsAre;
 
 /// A block of 40 x 20 x 10 mm with its lowest corner at the origin.
@@ -63,7 +64,7 @@ TEST(Acceleration, of_the_papers_arm_pushes_its_part_with_11_newtons_along_the_d
 TEST(Disturbances, each_carry_what_acts_always) {
   const geometry::Surface surface = block();
   model::Task task;
-  task.always = {model::Gravity{"", Vector3d(0, 0, -3)}};
+  task.always = {model::Gravity{"", {Vector3d(0, 0, -3)}}};
   task.disturbances = {model::PointForce{"insertion", {3, 0, 20}, {0, 0, -15}},
                        model::PlainWrench{"lever", Vector3d::Zero(), {200, 0, 0}},
                        model::PlainWrench{"", {1, 0, 0}, {}}, model::PlainWrench{"", {2, 0, 0}, {}}};
@@ -85,10 +86,45 @@ TEST(Disturbances, of_a_task_with_only_what_acts_always_are_that_alone) {
   EXPECT_THAT(names(*all), ElementsAre("always"));
 }
 
-TEST(Disturbances, refuse_a_source_of_several_loads_that_would_act_always) {
+TEST(Disturbances, act_with_each_state_of_what_acts_always) {
   const geometry::Surface surface = block();
   model::Task task;
-  task.always = {model::Acceleration{"", 1, {Vector3d::UnitX(), Vector3d::UnitY()}}};
+  task.always = {model::Gravity{"", {Vector3d(0, 0, -1), {Vector3d(0, 0, 1), "overhead"}}}};
+  task.disturbances = {model::PlainWrench{"lever", Vector3d::Zero(), {200, 0, 0}}, model::PlainWrench{}};
+  const auto all = disturbances_of(task, body_of(surface));
+  ASSERT_TRUE(all.has_value());
+  EXPECT_THAT(names(*all), ElementsAre("lever with gravity[-z]", "lever with gravity[overhead]",
+                                       "wrench with gravity[-z]", "wrench with gravity[overhead]"));
+  EXPECT_NEAR((*all)[1].wrench[2], 0.18 * 9.80665, 1e-12);
+  EXPECT_EQ((*all)[1].wrench[3], 200 + 10 * (*all)[1].wrench[2]);
+  task.disturbances.clear();
+  EXPECT_THAT(names(*disturbances_of(task, body_of(surface))),
+              ElementsAre("gravity[-z]", "gravity[overhead]"));
+}
+
+TEST(Disturbances, that_act_together_add_up_one_choice_of_each_at_a_time) {
+  model::Task task;
+  const model::Drilling drill{"drill", {1, 2, 3}, {0, 0, -2}, 40, 300, 0, model::Drilling::Turns::Right};
+  const model::PlainWrench hose{"hose", {1, 0, 0}, {0, 5, 0}};
+  task.disturbances = {model::Together{"both", {drill, hose}}, hose};
+  const auto all = disturbances_of(task, {});
+  ASSERT_TRUE(all.has_value());
+  EXPECT_THAT(names(*all),
+              ElementsAre("both[drill[thrust] with hose]", "both[drill[thrust, torque] with hose]",
+                          "both[drill[torque] with hose]", "hose"));
+  Wrench expected;
+  expected << 1, 0, -40, -80, 45, -300;  // (1, 2, 3) x (0, 0, -40) = (-80, 40, 0)
+  EXPECT_EQ((*all)[1].wrench, expected);
+}
+
+TEST(Disturbances, refuse_more_loads_than_anyone_could_wait_for) {
+  const geometry::Surface surface = block();
+  model::Task task;
+  const model::Acceleration shaken{"", 1, {}, true};
+  task.disturbances = {model::Together{"", {shaken, shaken, shaken}}};
+  EXPECT_FALSE(disturbances_of(task, body_of(surface)).has_value());
+  task.always = {shaken, shaken};
+  task.disturbances = {shaken};
   EXPECT_FALSE(disturbances_of(task, body_of(surface)).has_value());
 }
 
@@ -96,7 +132,7 @@ TEST(Disturbances, refuse_the_weight_of_a_part_without_mass) {
   model::Task task;
   task.disturbances = {model::Gravity{}};
   EXPECT_FALSE(disturbances_of(task, {}).has_value());
-  task.disturbances = {model::Acceleration{"", 1, {Vector3d::UnitX()}}};
+  task.disturbances = {model::Acceleration{"", 1, {Vector3d(1, 0, 0)}}};
   EXPECT_FALSE(disturbances_of(task, {}).has_value());
 }
 
