@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -96,6 +97,36 @@ std::string designs_text(const planner::Plan& plan, std::size_t at_most) {
   }
   if (plan.designs.size() > at_most) text += fmt::format("… and {} more\n", plan.designs.size() - at_most);
   return text;
+}
+
+std::string certified_text(const planner::Plan& plan) {
+  std::string text;
+  for (const model::Design& design : plan.designs) {
+    if (!design.certified) continue;
+    const model::Certified& worst = *design.certified;
+    const std::string where =
+        fmt::format("{} on a {} face at ({:.1f}, {:.1f}, {:.1f})", worst.spray,
+                    worst.curved ? "curved" : "flat", worst.at_mm.x(), worst.at_mm.y(), worst.at_mm.z());
+    if (std::isinf(worst.low_n)) {
+      text += fmt::format("{:<10} warning: no squeeze resists {}\n", design.id, where);
+      continue;
+    }
+    text += fmt::format("{:<10} {:>9.1f} {:>9.1f} {:>9.1f}  {}\n", design.id, worst.sampled_n, worst.low_n,
+                        worst.high_n, where);
+    const double usable_n = design.squeeze.usable_n;
+    if (worst.low_n > usable_n) {
+      text += fmt::format("{:<10} warning: that is more than the usable {:.1f} N\n", "", usable_n);
+    } else if (worst.high_n > usable_n) {
+      text += fmt::format("{:<10} warning: that may be more than the usable {:.1f} N\n", "", usable_n);
+    }
+  }
+  if (text.empty()) return text;
+  return fmt::format(
+             "\nThe worst spray anywhere a jet reaches: what the samples need, what one spray does need, "
+             "what none "
+             "exceeds.\n{:<10} {:>9} {:>9} {:>9}  worst spray\n",
+             "design", "sampled N", "at least", "at most") +
+         text;
 }
 
 }  // namespace pinjaw::app

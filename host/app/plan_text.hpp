@@ -16,4 +16,8 @@ std::string losses_text(const planner::Plan& plan);
 /// The best designs, one line each.
 std::string designs_text(const planner::Plan& plan, std::size_t at_most);
 
+/// The worst spray of each certified design, and a warning where it needs more than the usable force; empty
+/// where none is certified.
+std::string certified_text(const planner::Plan& plan);
+
 }  // namespace pinjaw::app

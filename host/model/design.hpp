@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -41,6 +42,18 @@ struct Alternative {
   double jaw_separation_mm = 0;
 };
 
+/// The spray that needs the most squeeze of a design, anywhere a jet reaches the part: a bracket. Part frame.
+struct Certified {
+  double sampled_n = 0;  ///< the most that a sampled spray needs
+  double low_n = 0;      ///< needed by the spray at `at_mm`, which a jet reaches; +inf: no squeeze resists it
+  double high_n = 0;     ///< none needs more, wherever it hits
+  std::string spray;     ///< name of that spray, and of what acts with it where that has several states
+  Eigen::Vector3d at_mm = Eigen::Vector3d::Zero();
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit, outward; the force acts against it
+  Eigen::Vector3d from = Eigen::Vector3d::Zero();    ///< unit: the jet comes from there
+  bool curved = false;                               ///< whether it hits a curved face
+};
+
 /// A planar fixture made 3-d: one pin layout that holds the part.
 struct Design {
   std::string id;
@@ -52,6 +65,7 @@ struct Design {
   std::vector<PinDesign> pins;  ///< sorted by hole
   Squeeze squeeze;
   std::vector<Alternative> alternatives;
+  std::optional<Certified> certified;
 };
 
 }  // namespace pinjaw::model

@@ -37,6 +37,7 @@ geometry::TriangleMesh rotated(geometry::TriangleMesh mesh, const Matrix3d& rota
   for (geometry::Silhouette& line : mesh.silhouettes) {
     for (Vector3d& p : line.points_mm) p = rotation * p;
   }
+  for (Vector3d& normal : mesh.normals) normal = rotation * normal;
   return mesh;
 }
 

@@ -5,11 +5,13 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
 
 #include "host/planner/force/force.hpp"
 #include "host/planner/heights/heights.hpp"
 #include "host/planner/loading/loading.hpp"
+#include "host/planner/plan/check_certified.hpp"
 
 namespace pinjaw::planner {
 
@@ -284,7 +286,9 @@ std::vector<Claim> check_design(const Plan& plan, const Scene& scene, const mode
                fmt::format("margin {:.3g}", margin));
   check_loading(plan, scene, design, report);
   check_force(plan, design, report);
-  return report.take();
+  std::vector<Claim> claims = report.take();
+  std::ranges::move(check_certified(plan, scene, design), std::back_inserter(claims));
+  return claims;
 }
 
 }  // namespace pinjaw::planner

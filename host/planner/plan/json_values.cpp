@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "host/config/fields.hpp"
+#include "host/planner/plan/certify_json.hpp"
 
 namespace pinjaw::planner {
 
@@ -145,20 +146,22 @@ ordered_json design_json(const model::Design& design) {
                             {"jaw_separation_mm", other.jaw_separation_mm}});
   }
   const model::Squeeze& squeeze = design.squeeze;
-  return {{"id", design.id},
-          {"split", model::to_string(design.split)},
-          {"jaw_separation_mm", design.jaw_separation_mm},
-          {"jaw_open_mm", design.jaw_open_mm},
-          {"closure_margin", design.closure_margin},
-          {"part_pose", pose_json(design.part_pose)},
-          {"pins", pins},
-          {"squeeze",
-           {{"required_n", squeeze.required_n},
-            {"usable_n", squeeze.usable_n},
-            {"limit_n", squeeze.limit_n},
-            {"margin_n", squeeze.margin_n},
-            {"critical", squeeze.critical}}},
-          {"other_column_shifts", alternatives}};
+  ordered_json json = {{"id", design.id},
+                       {"split", model::to_string(design.split)},
+                       {"jaw_separation_mm", design.jaw_separation_mm},
+                       {"jaw_open_mm", design.jaw_open_mm},
+                       {"closure_margin", design.closure_margin},
+                       {"part_pose", pose_json(design.part_pose)},
+                       {"pins", pins},
+                       {"squeeze",
+                        {{"required_n", squeeze.required_n},
+                         {"usable_n", squeeze.usable_n},
+                         {"limit_n", squeeze.limit_n},
+                         {"margin_n", squeeze.margin_n},
+                         {"critical", squeeze.critical}}},
+                       {"other_column_shifts", alternatives}};
+  if (design.certified) json["certified"] = certified_json(*design.certified);
+  return json;
 }
 
 model::Vector3d read_vector3(const JsonField& field) {
@@ -257,6 +260,7 @@ model::Design read_design(const JsonField& field) {
                                    whole(other.at("right_shift"), shift),
                                    other.at("jaw_separation_mm").number(config::length_at_least_0())});
   }
+  if (field.has("certified")) design.certified = read_certified(field.at("certified"));
   return design;
 }
 

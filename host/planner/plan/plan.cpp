@@ -11,6 +11,7 @@
 #include "host/base/random.hpp"
 #include "host/planner/force/force.hpp"
 #include "host/planner/plan/candidates.hpp"
+#include "host/planner/plan/certify.hpp"
 #include "host/planner/plan/design_names.hpp"
 
 namespace pinjaw::planner {
@@ -157,6 +158,10 @@ base::Expected<Plan> make_plan(const model::Task& task, const Scene& scene, cons
   plan.funnel.heights = counts->funnel.heights;
   plan.funnel.loadable = counts->funnel.loadable;
   plan.losses.merge(counts->losses);
+  if (options.certify > 0) {
+    const auto done = certify(task, scene, options.certify, options.stop, progress, plan);
+    if (!done) return tl::unexpected(done.error());
+  }
   return plan;
 }
 

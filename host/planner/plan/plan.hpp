@@ -12,6 +12,7 @@
 #include "host/model/design.hpp"
 #include "host/model/disturbance.hpp"
 #include "host/model/task.hpp"
+#include "host/planner/force/disturbances.hpp"
 #include "host/planner/plan/scene.hpp"
 
 namespace pinjaw::planner {
@@ -54,6 +55,7 @@ struct Plan {
   std::vector<model::Disturbance> disturbances;  ///< part frame, `always` included
   Funnel funnel;
   Losses losses;
+  std::vector<Jet> jets;  ///< among which the worst sprays of certified designs are; none where none is
   std::vector<model::Design> designs;
 };
 
@@ -64,6 +66,7 @@ struct PlanOptions {
   model::FrictionModel friction = model::FrictionModel::Pyramid;
   bool loading_2d = false;
   std::size_t top = 100;      ///< designs kept in the plan; 0 keeps all
+  std::size_t certify = 0;    ///< the best so many designs are told their worst spray
   int threads = 0;            ///< 0: as many as the machine has
   std::stop_token stop = {};  ///< asks the plan to end early, with a Failure
 };

@@ -5,6 +5,7 @@
 #include "host/base/json_document.hpp"
 #include "host/base/json_fields.hpp"
 #include "host/base/json_places.hpp"
+#include "host/planner/plan/certify_json.hpp"
 #include "host/planner/plan/json_values.hpp"
 
 namespace pinjaw::planner {
@@ -20,16 +21,6 @@ Funnel read_funnel(const JsonField& field) {
   return {field.whole("features"), field.whole("planar"),      field.whole("heights"),
           field.whole("loadable"), field.whole("not_wedging"), field.whole("resistable"),
           field.whole("strong")};
-}
-
-ordered_json disturbances_json(const Plan& plan) {
-  ordered_json list = ordered_json::array();
-  for (const model::Disturbance& disturbance : plan.disturbances) {
-    ordered_json wrench = ordered_json::array();
-    for (int i = 0; i < 6; ++i) wrench.push_back(disturbance.wrench[i]);
-    list.push_back({{"name", disturbance.name}, {"wrench", wrench}});
-  }
-  return list;
 }
 
 ordered_json obstacles_json(const std::vector<model::Obstacle>& obstacles) {
@@ -51,19 +42,6 @@ std::vector<model::Obstacle> read_obstacles(const JsonField& field) {
   return obstacles;
 }
 
-std::vector<model::Disturbance> read_disturbances(const JsonField& field) {
-  std::vector<model::Disturbance> disturbances;
-  for (const JsonField& entry : field.list()) {
-    model::Disturbance disturbance;
-    disturbance.name = entry.text("name");
-    const std::vector<double> wrench =
-        entry.at("wrench").numbers(6, {"a number from -1e12 to 1e12", -1e12, 1e12});
-    for (int i = 0; i < 6; ++i) disturbance.wrench[i] = wrench[static_cast<std::size_t>(i)];
-    disturbances.push_back(std::move(disturbance));
-  }
-  return disturbances;
-}
-
 }  // namespace
 
 std::string to_json(const Plan& plan) {
@@ -83,7 +61,8 @@ std::string to_json(const Plan& plan) {
     document["attached"] = {{"file", plan.attached->file.string()}, {"base", plan.attached->base}};
   document["friction"] = friction_json({plan.friction, plan.friction_model});
   document["random"] = plan.random_algorithm;
-  document["disturbances"] = disturbances_json(plan);
+  document["disturbances"] = disturbances_json(plan.disturbances);
+  if (!plan.jets.empty()) document["jets"] = jets_json(plan.jets);
   document["funnel"] = funnel_json(plan.funnel);
   document["losses"] = plan.losses;
   document["designs"] = ordered_json::array();
@@ -115,6 +94,7 @@ base::Checked<Plan> read_plan(const std::filesystem::path& path) {
   plan.friction_model = friction.model;
   plan.random_algorithm = top.text("random");
   plan.disturbances = read_disturbances(top.at("disturbances"));
+  if (top.has("jets")) plan.jets = read_jets(top.at("jets"));
   plan.funnel = read_funnel(top.at("funnel"));
   for (const JsonField& design : top.at("designs").list()) plan.designs.push_back(read_design(design));
   if (!mistakes.empty()) return tl::unexpected(base::placed_in_json(mistakes, document->text));

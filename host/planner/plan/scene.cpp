@@ -25,6 +25,8 @@ geometry::Surface placed(const part::Part& part, const model::Obstacle& at) {
     const geometry::Vector2d plan = at.pose * geometry::Vector2d(p_mm.head<2>());
     p_mm = {plan.x(), plan.y(), p_mm.z() + at.z_mm};
   }
+  for (geometry::Vector3d& normal : mesh.normals)
+    normal.head<2>() = at.pose.turned(geometry::Vector2d(normal.head<2>()));
   return geometry::Surface(std::move(mesh));
 }
 

@@ -1,0 +1,66 @@
+#include "host/planner/plan/check_certified.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/planner/plan/certify.hpp"
+
+namespace pinjaw::planner {
+namespace {
+
+constexpr double kForceTolN = 1e-6;  // chosen: as of the other forces of a design
+constexpr double kUnitTol = 1e-9;
+
+Claim claim(const model::Design& design, std::string what, bool holds, std::string found) {
+  return {design.id, std::move(what), holds, holds ? std::string() : std::move(found)};
+}
+
+Claim equal(const model::Design& design, const std::string& what, double stated_n, double found_n) {
+  const bool holds = stated_n == found_n || std::abs(stated_n - found_n) <= kForceTolN;
+  return claim(design, what, holds, fmt::format("stated {:.9g}, recomputed {:.9g}", stated_n, found_n));
+}
+
+/// Whether the name is that of the jet, alone or with what acts with it.
+bool tells(const std::string& name, const Jet& jet) {
+  return name == jet.name || name.starts_with(jet.name + " with ");
+}
+
+}  // namespace
+
+std::vector<Claim> check_certified(const Plan& plan, const Scene& scene, const model::Design& design) {
+  if (!design.certified) return {};
+  const model::Certified& stated = *design.certified;
+  std::vector<Claim> claims;
+  const bool units =
+      std::abs(stated.normal.norm() - 1) <= kUnitTol && std::abs(stated.from.norm() - 1) <= kUnitTol;
+  claims.push_back(claim(design, "the worst spray's directions are of length 1", units, "one is not"));
+
+  double needs_n = -1;
+  bool reached = false;
+  SqueezeSolver solver(grasp_of(design, plan.friction));
+  for (const Jet& jet : plan.jets) {
+    if (!units || !tells(stated.spray, jet)) continue;
+    reached = reached || (may_come_from(jet.spray, stated.from) &&
+                          jet_meets_first(scene.part.surface, stated.at_mm, stated.from));
+    needs_n = std::max(
+        needs_n, jet_need(solver, jet, stated.at_mm, stated.normal, plan.side, plan.friction_model).force_n);
+  }
+  claims.push_back(
+      claim(design, "a jet reaches the worst spray's point first", reached, "none from there does"));
+  claims.push_back(equal(design, "squeeze that the worst spray needs", stated.low_n, needs_n));
+
+  WorstSpray search = worst_spray_of(plan, scene);
+  const auto found = certified(plan, search, design);
+  claims.push_back(claim(design, "a new search finds a worst spray", found.has_value(), "it finds none"));
+  if (!found) return claims;
+  claims.push_back(equal(design, "least that the worst spray needs", stated.low_n, found->low_n));
+  claims.push_back(equal(design, "most that any spray needs", stated.high_n, found->high_n));
+  claims.push_back(equal(design, "most that a sampled spray needs", stated.sampled_n, found->sampled_n));
+  claims.push_back(claim(design, "the worst spray acts along the surface's normal",
+                         (found->normal - stated.normal).norm() <= kUnitTol, "the search finds another"));
+  return claims;
+}
+
+}  // namespace pinjaw::planner
