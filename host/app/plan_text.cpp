@@ -129,4 +129,30 @@ std::string certified_text(const planner::Plan& plan) {
          text;
 }
 
+std::string robust_text(const planner::Plan& plan) {
+  if (!plan.ranges) return {};
+  const model::Ranges& ranges = *plan.ranges;
+  const geometry::Interval friction = ranges.friction_about(plan.friction);
+  std::string text = fmt::format(
+      "\nover friction {:.3g} to {:.3g}, pins {:.3g} mm off, {:.3g} mm thicker or thinner, part {:.3g} mm "
+      "off, air "
+      "{:.3g} to {:.3g}:\n",
+      friction.lo, friction.hi, ranges.pin_position_mm, ranges.pin_radius_mm, ranges.part_size_mm,
+      ranges.air_pressure.lo, ranges.air_pressure.hi);
+  text += fmt::format("{:<10} {:>9} {:>9} {:>9} {:>9} {:>9}\n", "design", "worst N", "margin N", "moves mm",
+                      "at most", "turns deg");
+  for (const model::Design& design : plan.designs) {
+    if (!design.robust) continue;
+    const model::Robust& robust = *design.robust;
+    const std::string squeeze =
+        robust.worst_required_n ? fmt::format("{:>9.1f} {:>9.1f}", *robust.worst_required_n, robust.margin_n)
+                                : fmt::format("{:>19}", "fails: " + robust.failure);
+    const std::string bound =
+        robust.location_bound_mm ? fmt::format("{:.3f}", *robust.location_bound_mm) : "not proven";
+    text += fmt::format("{:<10} {} {:>9.3f} {:>9} {:>9.3f}\n", design.id, squeeze, robust.location_error_mm,
+                        bound, robust.location_error_deg);
+  }
+  return text;
+}
+
 }  // namespace pinjaw::app

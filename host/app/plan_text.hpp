@@ -20,4 +20,7 @@ std::string designs_text(const planner::Plan& plan, std::size_t at_most);
 /// where none is certified.
 std::string certified_text(const planner::Plan& plan);
 
+/// How the designs that tell it fare over the ranges; empty where none does.
+std::string robust_text(const planner::Plan& plan);
+
 }  // namespace pinjaw::app

@@ -128,20 +128,23 @@ model::Grip read_grip(YamlMap map, const model::Actuator& actuator) {
 
 /// Rules between the settings of one kit. A setting that is wrong by itself is NaN and breaks none of them.
 void check_together(const model::Kit& kit, const YamlMap& pins) {
-  if (2 * kit.pins.radius_mm > kit.grid.spacing_mm) {
-    pins.mistake_at("radius_mm", fmt::format("pins of radius {} overlap in holes {} apart",
-                                             kit.pins.radius_mm, kit.grid.spacing_mm));
-  }
-  const bool rests_on_plate = kit.jaws.plate_gap_mm == 0;  // a pallet: no other plate stands this far away
-  if (!rests_on_plate && kit.pins.protrusion_mm >= kit.jaws.plate_gap_mm) {
-    pins.mistake_at(
-        "protrusion_mm",
-        fmt::format("a pin that protrudes {} would reach the other gripper's plate, plate_gap_mm {} away",
-                    kit.pins.protrusion_mm, kit.jaws.plate_gap_mm));
-  }
-  if (!kit.pins.lengths_mm.empty() && kit.pins.lengths_mm.back() <= kit.jaws.plate_gap_mm) {
-    pins.mistake_at("lengths_mm", fmt::format("no length passes plate_gap_mm {}: no pin reaches the part",
-                                              kit.jaws.plate_gap_mm));
+  for (const model::KitConflict conflict : model::conflicts_of(kit)) {
+    switch (conflict) {
+      case model::KitConflict::PinsOverlap:
+        pins.mistake_at("radius_mm", fmt::format("pins of radius {} overlap in holes {} apart",
+                                                 kit.pins.radius_mm, kit.grid.spacing_mm));
+        break;
+      case model::KitConflict::PinMeetsOtherPlate:
+        pins.mistake_at(
+            "protrusion_mm",
+            fmt::format("a pin that protrudes {} would reach the other gripper's plate, plate_gap_mm {} away",
+                        kit.pins.protrusion_mm, kit.jaws.plate_gap_mm));
+        break;
+      case model::KitConflict::NoPinReachesThePart:
+        pins.mistake_at("lengths_mm", fmt::format("no length passes plate_gap_mm {}: no pin reaches the part",
+                                                  kit.jaws.plate_gap_mm));
+        break;
+    }
   }
 }
 

@@ -3,6 +3,7 @@
 #include "host/config/disturbances.hpp"
 #include "host/config/fields.hpp"
 #include "host/config/part_source.hpp"
+#include "host/config/ranges.hpp"
 #include "host/config/read.hpp"
 
 namespace pinjaw::config {
@@ -51,6 +52,17 @@ double coefficient(const FrictionSource& friction, const std::string& material, 
   return 0;
 }
 
+/// All that the pins could be made of, by the table that the task names.
+std::vector<model::PinMaterial> pin_materials(const FrictionSource& friction, const std::string& material,
+                                              const Materials& materials) {
+  std::vector<model::PinMaterial> pins;
+  if (!friction.table) return pins;
+  for (const std::string& name : materials.names()) {
+    if (const auto mu = materials.static_friction(material, name)) pins.push_back({name, *mu});
+  }
+  return pins;
+}
+
 model::Obstacle read_obstacle(const YamlValue& item) {
   YamlMap map = item.map("an obstacle {file: ..., pose: {...}}");
   model::Obstacle obstacle;
@@ -90,6 +102,7 @@ Read<model::Task> read_task(const std::filesystem::path& path) {
   const Materials materials = materials_for(path.parent_path(), friction.table, nested);
   if (const auto part = top.require("part")) task.part = read_part_source(*part, materials, nested);
   task.friction = coefficient(friction, task.part.material, materials);
+  task.pin_materials = pin_materials(friction, task.part.material, materials);
   if (const auto kit = top.require("kit")) {
     const auto kit_file = named_file(*kit);
     if (kit_file) task.kit = take(read_kit(*kit_file), nested).value_or(model::Kit{});
@@ -107,6 +120,7 @@ Read<model::Task> read_task(const std::filesystem::path& path) {
     }
   }
   task.attached = read_attached(top);
+  task.ranges = read_ranges(top, task.friction);
   top.finish();
   return checked(file, nested, std::move(task));
 }

@@ -23,7 +23,6 @@ struct TriangleMesh {
   std::vector<std::array<int, 3>> triangles;
   std::vector<int> face_of;               ///< source face of each triangle, as many as triangles
   std::vector<Silhouette> silhouettes{};  ///< of the surface that the triangles stand for
-  std::vector<int> face_of;  ///< source face of each triangle, as many as triangles
   /// Of the smooth surface the triangles stand for, unit and outward, one a vertex, zero where it has none (a
   /// cone's tip); empty where nothing but the triangles is known.
   std::vector<Vector3d> normals{};

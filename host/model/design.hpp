@@ -8,6 +8,7 @@
 
 #include "host/geometry/plane.hpp"
 #include "host/model/kit.hpp"
+#include "host/model/robust.hpp"
 
 namespace pinjaw::model {
 
@@ -66,6 +67,7 @@ struct Design {
   Squeeze squeeze;
   std::vector<Alternative> alternatives;
   std::optional<Certified> certified;
+  std::optional<Robust> robust;  ///< where it was asked for
 };
 
 }  // namespace pinjaw::model

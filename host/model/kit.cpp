@@ -24,4 +24,15 @@ double open_separation_mm(const Jaws& jaws, double separation_mm) {
   return std::min(jaws.separation_mm.hi, separation_mm + 2 * *jaws.opening_mm);
 }
 
+std::vector<KitConflict> conflicts_of(const Kit& kit) {
+  std::vector<KitConflict> conflicts;
+  if (2 * kit.pins.radius_mm > kit.grid.spacing_mm) conflicts.push_back(KitConflict::PinsOverlap);
+  const bool rests_on_plate = kit.jaws.plate_gap_mm == 0;  // a pallet: no other plate stands this far away
+  if (!rests_on_plate && kit.pins.protrusion_mm >= kit.jaws.plate_gap_mm)
+    conflicts.push_back(KitConflict::PinMeetsOtherPlate);
+  if (!kit.pins.lengths_mm.empty() && kit.pins.lengths_mm.back() <= kit.jaws.plate_gap_mm)
+    conflicts.push_back(KitConflict::NoPinReachesThePart);
+  return conflicts;
+}
+
 }  // namespace pinjaw::model

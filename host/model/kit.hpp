@@ -85,6 +85,14 @@ struct Kit {
 /// holes' rectangle grown by the edge offset (DESIGN 3.1 no. 8).
 std::vector<JawBody> jaw_solids(const Kit& kit);
 
+/// Settings that are each allowed and cannot stand together in one kit.
+enum class KitConflict {
+  PinsOverlap,          ///< pins in neighbouring holes
+  PinMeetsOtherPlate,   ///< protrusion reaches the plate of a gripper from the other side
+  NoPinReachesThePart,  ///< no stock length passes the plate gap
+};
+std::vector<KitConflict> conflicts_of(const Kit& kit);
+
 /// Centre of `hole` in the gripper frame at jaw separation `separation_mm` (DESIGN 2).
 Vector2d p_GHole_mm(const Grid& grid, const Hole& hole, double separation_mm);
 

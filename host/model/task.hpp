@@ -8,6 +8,7 @@
 #include "host/model/disturbance.hpp"
 #include "host/model/kit.hpp"
 #include "host/model/profile.hpp"
+#include "host/model/robust.hpp"
 
 namespace pinjaw::model {
 
@@ -35,17 +36,25 @@ struct Attached {
   std::string base;  ///< product name of the base part's solid in that file
 };
 
+/// What pins may be made of, and their static friction on a task's part.
+struct PinMaterial {
+  std::string name;
+  double friction = 0;
+};
+
 /// One planning job: a part, a kit, the side it is reached from, and what the grip must resist.
 struct Task {
   std::string name;
   PartSource part;
   Kit kit;
   Side side = Side::Below;
-  double friction = 0;  ///< static coefficient
+  double friction = 0;                     ///< static coefficient
+  std::vector<PinMaterial> pin_materials;  ///< of the friction table that the task names; else none
   std::vector<DisturbanceSource> always;
   std::vector<DisturbanceSource> disturbances;
   std::vector<Obstacle> obstacles;
   std::optional<Attached> attached;
+  Ranges ranges;
 };
 
 }  // namespace pinjaw::model

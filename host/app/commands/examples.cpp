@@ -17,7 +17,8 @@ struct Example {
 constexpr std::array kExamples = {
     Example{"plan",
             "  pinjaw plan configs/tasks/valve-pedestal.yaml -o plan.json\n"
-            "  pinjaw plan configs/tasks/cam.yaml --top all --friction cone > plan.json"},
+            "  pinjaw plan configs/tasks/cam.yaml --top all --friction cone > plan.json\n"
+            "  pinjaw plan configs/tasks/l-plate.yaml --robust 20 --rank robust -o plan.json"},
     Example{"planar",
             "  pinjaw planar configs/parts/cam.yaml --kit configs/kits/acc-pedestal.yaml -o fixtures.json"},
     Example{"features",

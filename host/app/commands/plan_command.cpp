@@ -1,11 +1,13 @@
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <optional>
 
 #include "host/app/choices.hpp"
 #include "host/app/commands/commands.hpp"
 #include "host/app/commands/planning.hpp"
 #include "host/app/plan_text.hpp"
 #include "host/planner/plan/plan_json.hpp"
+#include "host/planner/plan/rank.hpp"
 
 namespace pinjaw::app {
 
@@ -14,26 +16,38 @@ namespace {
 struct Options {
   std::string task;
   std::string output;
+  std::optional<int> certify;
+  std::optional<int> robust;
+  planner::Rank rank = planner::Rank::Nominal;
   PlanningOptions planning;
-  std::string certify;
 };
 
-constexpr std::size_t kCertified = 10;  // where --certify has no number
+constexpr int kLookedInto = 10;  // where --certify or --robust has no number: as many as the summary shows
+constexpr int kMostLookedInto = 1000000;
 
-/// "" or a whole number above 0.
-std::string certify_mistake(const std::string& text) {
-  const bool digits = text.size() < 6 && text.find_first_not_of("0123456789") == std::string::npos;
-  if (text.empty() || (digits && std::stoul(text) > 0)) return {};
-  return "expected a count of designs above 0 (or nothing, with --certify after the task), found " + text;
+/// The plan with how robust its best designs are, where that was asked for.
+std::optional<planner::Plan> plan_robustly(Context& context, const Options& options) {
+  auto job = read_job(context, options.task, options.planning);
+  if (!job) return std::nullopt;
+  const bool by_worst = options.rank == planner::Rank::Robust;
+  const planner::RobustOptions robust{static_cast<std::size_t>(options.robust.value_or(kLookedInto)),
+                                      options.rank, job->options.top};
+  if (by_worst) job->options.top = 0;  // the most robust may stand anywhere
+  auto plan = plan_job(context, *job, options.task);
+  if (!plan) return std::nullopt;
+  if (options.robust || by_worst)
+    planner::tell_robustness(*plan, job->scene, job->task.ranges, robust, context.progress_sink());
+  return plan;
 }
 
 void run_plan(Context& context, const Options& options) {
   if (!context.can_write(options.output, options.task)) return;
-  const auto plan = plan_task(context, options.task, options.planning);
+  const auto plan = plan_robustly(context, options);
   if (!plan) return;
   constexpr std::size_t kShown = 10;
   const std::string summary =
       funnel_text(plan->funnel) + "\n" + designs_text(*plan, kShown) + certified_text(*plan) +
+      robust_text(*plan) +
       "\nThe squeeze is what can balance the load, the sum of both jaws; it is not a guarantee.";
   if (!context.deliver(options.output, planner::to_json(*plan), summary)) return;
   if (plan->designs.empty()) context.exit_code = ExitCode::No;
@@ -48,18 +62,24 @@ void add_plan(CLI::App& app, Context& context) {
   command->add_option("TASK", options->task, "task file")->type_name("")->check(file_name())->required();
   command->add_option("-o,--output", options->output, "plan JSON; without it the JSON goes to stdout")
       ->type_name("FILE");
+  const auto add_count = [&](const char* name, std::optional<int>& count, const char* help) {
+    command->add_option(name, count, help)
+        ->type_name("[N]")
+        ->expected(0, 1)
+        ->default_str(std::to_string(kLookedInto))
+        ->check(whole_in({1, kMostLookedInto}));
+  };
+  add_count("--certify", options->certify,
+            "for the best N designs (10), find the worst spray anywhere a jet reaches the part");
+  add_count("--robust", options->robust,
+            "how the N best designs (10) fare over the task's ranges of friction, pins, part and air");
+  add_choice<planner::Rank>(
+      *command, "--rank", options->rank,
+      {{"nominal", planner::Rank::Nominal}, {"robust", planner::Rank::Robust}},
+      "by the required squeeze, or first the N designs whose worst over the ranges is least");
   add_planning_options(*command, options->planning);
-  CLI::Option* certify =
-      command
-          ->add_option("--certify", options->certify,
-                       "for the best N designs (10), find the worst spray anywhere a jet reaches the part")
-          ->type_name("[N]")
-          ->expected(0, 1)
-          ->check(CLI::Validator(certify_mistake, ""));
-  command->callback([&context, options, certify] {
-    if (certify->count() > 0) {
-      options->planning.plan.certify = options->certify.empty() ? kCertified : std::stoul(options->certify);
-    }
+  command->callback([&context, options] {
+    options->planning.plan.certify = static_cast<std::size_t>(options->certify.value_or(0));
     run_plan(context, *options);
   });
 }

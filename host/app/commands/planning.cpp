@@ -59,26 +59,36 @@ void fail_without_design(Context& context, const std::string& id, const std::str
                                  : fmt::format("{} has {} designs, none is called {}", file, designs, id));
 }
 
-std::optional<planner::Plan> plan_task(Context& context, const std::string& task_file,
-                                       const PlanningOptions& options) {
-  const auto task = config::read_task(task_file);
+std::optional<Job> read_job(Context& context, const std::string& task_file, const PlanningOptions& options) {
+  auto task = config::read_task(task_file);
   if (!task) {
     context.fail(task.error(), "nothing was planned");
     return std::nullopt;
   }
-  const auto scene = planner::read_scene(*task);
+  auto scene = planner::read_scene(*task);
   if (!scene) {
     context.fail(ExitCode::BadFile, scene.error().message);
     return std::nullopt;
   }
-  planner::PlanOptions plan_options = options.plan;
-  plan_options.top = options.top == "all" ? 0 : std::stoul(options.top);
-  auto plan = planner::make_plan(*task, *scene, plan_options, context.progress_sink());
+  Job job{std::move(*task), std::move(*scene), options.plan};
+  job.options.top = options.top == "all" ? 0 : std::stoul(options.top);
+  return job;
+}
+
+std::optional<planner::Plan> plan_job(Context& context, const Job& job, const std::string& task_file) {
+  auto plan = planner::make_plan(job.task, job.scene, job.options, context.progress_sink());
   if (!plan) {
     context.fail(ExitCode::BadFile, task_file + ": " + plan.error().message);
     return std::nullopt;
   }
   return std::move(*plan);
+}
+
+std::optional<planner::Plan> plan_task(Context& context, const std::string& task_file,
+                                       const PlanningOptions& options) {
+  const auto job = read_job(context, task_file, options);
+  if (!job) return std::nullopt;
+  return plan_job(context, *job, task_file);
 }
 
 }  // namespace pinjaw::app

@@ -28,6 +28,19 @@ const model::Design* find_design(const std::vector<model::Design>& designs, cons
 void fail_without_design(Context& context, const std::string& id, const std::string& file,
                          std::size_t designs);
 
+/// A task and what it speaks of.
+struct Job {
+  model::Task task;
+  planner::Scene scene;
+  planner::PlanOptions options;
+};
+
+/// Reads the task and its files. Nothing where that failed, which has been reported.
+std::optional<Job> read_job(Context& context, const std::string& task_file, const PlanningOptions& options);
+
+/// Plans it. Nothing where that failed, which has been reported.
+std::optional<planner::Plan> plan_job(Context& context, const Job& job, const std::string& task_file);
+
 /// Reads the task and plans it. Nothing where that failed, which has been reported.
 std::optional<planner::Plan> plan_task(Context& context, const std::string& task_file,
                                        const PlanningOptions& options);

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <chrono>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -9,16 +10,21 @@
 #include "host/app/commands/commands.hpp"
 #include "host/app/commands/planning.hpp"
 #include "host/app/plan_text.hpp"
+#include "host/app/time_limit.hpp"
+#include "host/app/why_text.hpp"
 #include "host/planner/force/force.hpp"
-#include "host/planner/plan/plan_json.hpp"
 
 namespace pinjaw::app {
 
 namespace {
 
+constexpr int kDefaultSeconds = 60;  // chosen: as long as a person waits for advice
+constexpr int kMostSeconds = 86400;
+
 struct Options {
   std::string task;
   std::string design;
+  int seconds = kDefaultSeconds;
   PlanningOptions planning;
 };
 
@@ -97,24 +103,33 @@ void print_design(const Context& context, const planner::Plan& plan, const model
                              : design_text(design, critical, shares));
 }
 
-void print_losses(const Context& context, const planner::Plan& plan) {
-  if (!context.json) return context.print(losses_text(plan));
-  // the plan's own document says both; only its designs are left out
-  const auto document = nlohmann::ordered_json::parse(planner::to_json(plan));
-  const nlohmann::ordered_json losses = {
-      {"task", document.at("task")}, {"funnel", document.at("funnel")}, {"losses", document.at("losses")}};
-  context.print(losses.dump(1));
+/// The near misses of a plan and, where it has no design, what would help; within the time allowed.
+void print_advice(Context& context, const Job& job, const planner::Plan& plan, int seconds) {
+  const TimeLimit limit{std::chrono::seconds(seconds)};
+  planner::Variant variant{job.task, job.options};
+  variant.options.stop = limit.token();
+  const auto sink = context.progress_sink();
+  Advice advice;
+  advice.misses = planner::nearest_misses(job.task, job.scene, plan, variant.options, sink);
+  if (!context.json) context.print(losses_text(plan) + misses_text(advice.misses));
+  if (plan.designs.empty()) {
+    const auto told = [&context](const planner::Suggestion& suggestion) {
+      if (!context.json) context.print(suggestion_text(suggestion));
+    };
+    if (!context.json) context.print(kSuggestionsHeading);
+    advice.suggestions = planner::suggest(variant, job.scene, plan, advice.misses, told, sink);
+  }
+  context.print(context.json ? why_json(plan, advice) : rest_text(advice));
 }
 
 void run_why(Context& context, Options options) {
   options.planning.top = "all";
-  auto plan = plan_task(context, options.task, options.planning);
+  const auto job = read_job(context, options.task, options.planning);
+  if (!job) return;
+  auto plan = plan_job(context, *job, options.task);
   if (!plan) return;
   if (plan->designs.empty()) context.exit_code = ExitCode::No;
-  if (options.design.empty()) {
-    plan->designs.clear();
-    return print_losses(context, *plan);
-  }
+  if (options.design.empty()) return print_advice(context, *job, *plan, options.seconds);
   const model::Design* design = find_design(plan->designs, options.design);
   if (design == nullptr)
     return fail_without_design(context, options.design, options.task, plan->designs.size());
@@ -125,9 +140,14 @@ void run_why(Context& context, Options options) {
 
 void add_why(CLI::App& app, Context& context) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("why", "what each phase left out and why; what limits one design");
+  CLI::App* command = app.add_subcommand(
+      "why", "what each phase left out, by how much, and what would help; what limits one design");
   command->add_option("TASK", options->task, "task file")->type_name("")->check(file_name())->required();
   command->add_option("--design", options->design, "id of a design, or best")->type_name("ID");
+  command->add_option("--seconds", options->seconds, "time for near misses and suggestions; 0: none")
+      ->type_name("N")
+      ->check(whole_in({0, kMostSeconds}))
+      ->capture_default_str();
   add_planning_options(*command, options->planning);
   command->callback([&context, options] { run_why(context, *options); });
 }

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -78,6 +79,17 @@ class Heights {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// How high the top of a pin may stand at a foot: from where it engages (lo) to where it still has room (hi).
+/// Empty (lo > hi) where the room is under the engagement.
+struct TopRange {
+  double z_edge_mm = 0;
+  model::Interval top_mm;
+};
+
+/// Nothing where no part lies above the point eps inside the foot. Stock lengths are not asked.
+std::optional<TopRange> top_range(const geometry::Surface& part, const model::PinStock& pins,
+                                  const Foot& foot);
 
 /// The same for one foot, not remembered and not rounded.
 PinHeightOutcome pin_height(const geometry::Surface& part, const model::PinStock& pins, double plate_top_mm,

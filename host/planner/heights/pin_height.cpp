@@ -60,7 +60,21 @@ double touched_mm(const Surface& part, const Foot& foot, double z_mm) {
   return part.silhouette_z_mm(foot.p_PFoot_mm, z_mm, 2 * model::kEps_mm).value_or(z_mm);
 }
 
+/// Heights that the top may have: engaged on the edge below, under what is above.
+model::Interval top_mm(const PinHeight& pin, const model::PinStock& pins) {
+  return {pin.z_edge_mm + pins.min_engagement_mm - kRounding_mm,
+          std::min(pin.contact_max_mm + pins.protrusion_mm, pin.height_max_mm - pins.clearance_mm)};
+}
+
 }  // namespace
+
+std::optional<TopRange> top_range(const Surface& part, const model::PinStock& pins, const Foot& foot) {
+  const auto edge = part.lowest_above(foot.p_PFoot_mm + model::kEps_mm * foot.n_P);
+  if (!edge) return std::nullopt;
+  PinHeight pin = probe(part, pins, foot);
+  pin.z_edge_mm = edge->point_mm.z();
+  return TopRange{pin.z_edge_mm, top_mm(pin, pins)};
+}
 
 PinHeightOutcome pin_height(const Surface& part, const model::PinStock& pins, double plate_top_mm,
                             const Foot& foot) {
@@ -68,9 +82,7 @@ PinHeightOutcome pin_height(const Surface& part, const model::PinStock& pins, do
   if (!edge) return tl::unexpected(HeightLoss::NoSurfaceAtFoot);
   PinHeight pin = probe(part, pins, foot);
   pin.z_edge_mm = touched_mm(part, foot, edge->point_mm.z());
-  const double least_mm = pin.z_edge_mm + pins.min_engagement_mm - kRounding_mm;
-  const double most_mm =
-      std::min(pin.contact_max_mm + pins.protrusion_mm, pin.height_max_mm - pins.clearance_mm);
+  const auto [least_mm, most_mm] = top_mm(pin, pins);
   if (most_mm < least_mm) return tl::unexpected(HeightLoss::NoEngagement);
 
   const auto length_mm = longest_mm(pins, most_mm - plate_top_mm);

@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <set>
 
 #include "host/planner/force/force.hpp"
 #include "host/planner/heights/heights.hpp"
 #include "host/planner/loading/loading.hpp"
 #include "host/planner/plan/check_certified.hpp"
+#include "host/planner/plan/check_robust.hpp"
 
 namespace pinjaw::planner {
 
@@ -251,16 +253,25 @@ void check_force(const Plan& plan, const model::Design& design, Report& report) 
   report.claim("the usable force holds it", design.squeeze.margin_n >= 0, "the margin is negative");
 }
 
+/// Smallest required squeeze first; ranked by worst, those that tell it come first, least worst first.
+bool in_order(const Plan& plan) {
+  const auto nominal_n = [](const model::Design& design) { return design.squeeze.required_n; };
+  if (!plan.ranked_by_worst) return std::ranges::is_sorted(plan.designs, {}, nominal_n);
+  const auto rest = std::ranges::find_if(plan.designs, [](const model::Design& d) { return !d.robust; });
+  const auto worst_n = [](const model::Design& design) {
+    return design.robust->worst_required_n.value_or(std::numeric_limits<double>::infinity());
+  };
+  return std::ranges::is_sorted(plan.designs.begin(), rest, {}, worst_n) &&
+         std::ranges::is_sorted(rest, plan.designs.end(), {}, nominal_n);
+}
+
 }  // namespace
 
 std::vector<Claim> check_plan(const Plan& plan, const Scene& scene) {
   Report report("");
   report.claim("the part's file is the one that was planned", plan.part.sha256 == scene.part.sha256,
                "its SHA-256 is " + scene.part.sha256);
-  report.claim(
-      "the designs come smallest required squeeze first",
-      std::ranges::is_sorted(plan.designs, {}, [](const model::Design& d) { return d.squeeze.required_n; }),
-      "they do not");
+  report.claim("the designs come in the order of their rank", in_order(plan), "they do not");
   const Funnel& f = plan.funnel;
   report.claim("no phase of the funnel gains fixtures",
                f.planar >= f.heights && f.heights >= f.loadable && f.loadable >= f.not_wedging &&
@@ -288,6 +299,7 @@ std::vector<Claim> check_design(const Plan& plan, const Scene& scene, const mode
   check_force(plan, design, report);
   std::vector<Claim> claims = report.take();
   std::ranges::move(check_certified(plan, scene, design), std::back_inserter(claims));
+  std::ranges::move(check_robust(plan, scene, design), std::back_inserter(claims));
   return claims;
 }
 

@@ -5,6 +5,7 @@
 
 #include "host/config/fields.hpp"
 #include "host/planner/plan/certify_json.hpp"
+#include "host/planner/plan/robust_json.hpp"
 
 namespace pinjaw::planner {
 
@@ -161,6 +162,7 @@ ordered_json design_json(const model::Design& design) {
                          {"critical", squeeze.critical}}},
                        {"other_column_shifts", alternatives}};
   if (design.certified) json["certified"] = certified_json(*design.certified);
+  if (design.robust) json["robust"] = robust_json(*design.robust);
   return json;
 }
 
@@ -261,6 +263,7 @@ model::Design read_design(const JsonField& field) {
                                    other.at("jaw_separation_mm").number(config::length_at_least_0())});
   }
   if (field.has("certified")) design.certified = read_certified(field.at("certified"));
+  if (field.has("robust")) design.robust = read_robust(field.at("robust"));
   return design;
 }
 

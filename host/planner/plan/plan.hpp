@@ -56,6 +56,8 @@ struct Plan {
   Funnel funnel;
   Losses losses;
   std::vector<Jet> jets;  ///< among which the worst sprays of certified designs are; none where none is
+  std::optional<model::Ranges> ranges;  ///< where designs tell how robust they are
+  bool ranked_by_worst = false;         ///< the designs that do come first, least worst squeeze first
   std::vector<model::Design> designs;
 };
 

@@ -7,6 +7,7 @@
 #include "host/base/json_places.hpp"
 #include "host/planner/plan/certify_json.hpp"
 #include "host/planner/plan/json_values.hpp"
+#include "host/planner/plan/robust_json.hpp"
 
 namespace pinjaw::planner {
 
@@ -65,6 +66,8 @@ std::string to_json(const Plan& plan) {
   if (!plan.jets.empty()) document["jets"] = jets_json(plan.jets);
   document["funnel"] = funnel_json(plan.funnel);
   document["losses"] = plan.losses;
+  if (plan.ranges) document["ranges"] = ranges_json(*plan.ranges);
+  document["rank"] = plan.ranked_by_worst ? "robust" : "nominal";
   document["designs"] = ordered_json::array();
   for (const model::Design& design : plan.designs) document["designs"].push_back(design_json(design));
   return document.dump(1) + "\n";
@@ -96,6 +99,8 @@ base::Checked<Plan> read_plan(const std::filesystem::path& path) {
   plan.disturbances = read_disturbances(top.at("disturbances"));
   if (top.has("jets")) plan.jets = read_jets(top.at("jets"));
   plan.funnel = read_funnel(top.at("funnel"));
+  if (top.has("ranges")) plan.ranges = read_ranges_json(top.at("ranges"));
+  if (top.has("rank")) plan.ranked_by_worst = top.at("rank").one_of({"nominal", "robust"}) == 1;
   for (const JsonField& design : top.at("designs").list()) plan.designs.push_back(read_design(design));
   if (!mistakes.empty()) return tl::unexpected(base::placed_in_json(mistakes, document->text));
   return plan;

@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "tests/host/app/child.hpp"
@@ -92,6 +93,86 @@ TEST(Why, tells_the_losses_and_what_binds_a_design_as_text_and_as_json) {
   const Ran none = bench.pinjaw("why " + kTask + " --design nosuch");
   EXPECT_EQ(none.exit_code, 1);
   EXPECT_THAT(none.err, HasSubstr("none is called nosuch"));
+}
+
+TEST(Why, names_a_change_of_the_kit_that_works_when_the_kit_is_changed) {
+  const Bench bench;
+  const auto write_kit = [&](const std::string& separation) {
+    bench.write("kit.yaml",
+                "kit: short\ngrid: {spacing_mm: 11.1125, columns: 1, rows: 9, edge_offset_mm: 5.55625}\n"
+                "pins: {radius_mm: 2.38125, lengths_mm: any, min_engagement_mm: 1, protrusion_mm: 1}\n"
+                "jaws: {separation_mm: " +
+                    separation + ", plate_gap_mm: 2}\nactuator: {max_squeeze_n: 140}\n");
+  };
+  write_kit("[0, 2]");
+  bench.write("task.yaml", "task: short\npart: {file: " + shipped("configs/parts/l-plate.yaml") +
+                               ", mass_kg: 0.1}\nkit: kit.yaml\nfriction: 0.2\ndisturbances: []\n");
+  const Ran why = bench.pinjaw("why task.yaml --json");
+  EXPECT_EQ(why.exit_code, 1);
+  const json document = json::parse(why.out);
+  EXPECT_EQ(document.at("near_misses")[0].at("quantity"), "jaw separation");
+  const json& found = document.at("suggestions");
+  const auto wider = std::ranges::find_if(found, [](const json& suggestion) {
+    return suggestion.at("changes")[0].at("key") == "kit.jaws.separation_mm";
+  });
+  ASSERT_NE(wider, found.end());
+  write_kit(wider->at("changes")[0].at("to"));
+  const Ran plan = bench.pinjaw("plan task.yaml");
+  EXPECT_EQ(plan.exit_code, 0);
+  EXPECT_EQ(json::parse(plan.out).at("funnel").at("strong"), wider->at("designs"));
+}
+
+TEST(Why, says_in_words_what_is_missing_and_what_would_help) {
+  const Bench bench;
+  bench.write("kit.yaml",
+              "kit: weak\ngrid: {spacing_mm: 11.1125, columns: 2, rows: 5, edge_offset_mm: 5.55625}\n"
+              "pins: {radius_mm: 2.38125, lengths_mm: any, min_engagement_mm: 1, protrusion_mm: 1}\n"
+              "jaws: {separation_mm: [0, 60], plate_gap_mm: 2}\nactuator: {max_squeeze_n: 0.5}\ngrip: "
+              "{light_n: 0.1}\n");
+  bench.write("task.yaml",
+              "task: weak\npart: {file: " + shipped("configs/parts/l-plate.yaml") +
+                  ", mass_kg: 0.1}\nkit: kit.yaml\nfriction: 0.2\nalways: [{gravity: [0, 0, -1]}]\n"
+                  "disturbances: []\n");
+  const Ran why = bench.pinjaw("why task.yaml");
+  EXPECT_EQ(why.exit_code, 1);
+  EXPECT_THAT(why.out, HasSubstr("usable squeeze 0.50 N, needs at least"));
+  EXPECT_THAT(why.out, HasSubstr("with kit.actuator.max_squeeze_n: "));
+  EXPECT_THAT(bench.pinjaw("why task.yaml --seconds 0").out, HasSubstr("not tried for lack of time"));
+}
+
+TEST(Plan, tells_how_robust_the_best_designs_are_and_check_agrees) {
+  const Bench bench;
+  const Ran ran = bench.pinjaw("plan " + kTask + " --robust 3 --rank robust --top 5 -o plan.json");
+  EXPECT_EQ(ran.exit_code, 0) << ran.err;
+  EXPECT_THAT(ran.out, HasSubstr("worst N"));
+  json plan = json::parse(bench.read("plan.json"));
+  EXPECT_TRUE(plan.contains("ranges"));
+  for (std::size_t i = 0; i < 5; ++i) {
+    const json& design = plan.at("designs")[i];
+    EXPECT_EQ(design.contains("robust"), i < 3);
+    if (i >= 3) continue;
+    EXPECT_GE(design.at("robust").at("worst_required_n"), design.at("squeeze").at("required_n"));
+    EXPECT_LE(design.at("robust").at("location_error_mm"), design.at("robust").at("location_bound_mm"));
+  }
+  EXPECT_EQ(bench.pinjaw("check plan.json").exit_code, 0);
+  plan["designs"][0]["robust"]["worst_required_n"] = 0.5;
+  bench.write("lie.json", plan.dump());
+  const Ran lie = bench.pinjaw("check lie.json");
+  EXPECT_EQ(lie.exit_code, 1);
+  EXPECT_THAT(lie.out, HasSubstr("squeeze at the worst point of its ranges"));
+}
+
+TEST(Plan, ranked_by_the_worst_lists_the_least_worst_first_and_check_agrees) {
+  const Bench bench;
+  EXPECT_EQ(bench.pinjaw("plan " + kTask + " --rank robust --robust 4 --top 6 -o plan.json").exit_code, 0);
+  const json plan = json::parse(bench.read("plan.json"));
+  EXPECT_EQ(plan.at("rank"), "robust");
+  EXPECT_EQ(plan.at("designs").size(), 6U);
+  for (std::size_t i = 1; i < 4; ++i) {
+    EXPECT_LE(plan.at("designs")[i - 1].at("robust").at("worst_required_n"),
+              plan.at("designs")[i].at("robust").at("worst_required_n"));
+  }
+  EXPECT_EQ(bench.pinjaw("check plan.json").exit_code, 0);
 }
 
 class Check : public testing::Test {
