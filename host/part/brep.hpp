@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "host/base/expected.hpp"
+#include "host/base/isolated.hpp"
 #include "host/geometry/mesh.hpp"
 #include "host/model/profile.hpp"
 #include "host/part/part.hpp"
@@ -83,8 +84,9 @@ struct BrepValues {
 };
 
 /// The values of the `chosen` ones among `solids`, silhouettes as they are when the direction `up` stands
-/// upright.
+/// upright; `stage` is told what is being done.
 base::Expected<BrepValues> values_of(const std::vector<NamedShape>& solids,
-                                     const std::vector<NamedShape>& chosen, const Vector3d& up);
+                                     const std::vector<NamedShape>& chosen, const Vector3d& up,
+                                     const base::IsolatedStage& stage);
 
 }  // namespace pinjaw::part

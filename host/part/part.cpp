@@ -7,6 +7,8 @@
 #include "host/base/files.hpp"
 #include "host/base/sha256.hpp"
 #include "host/part/brep.hpp"
+#include "host/part/brep_packing.hpp"
+#include "host/part/cad_process.hpp"
 #include "host/part/placing.hpp"
 #include "host/part/stl_part.hpp"
 
@@ -14,6 +16,7 @@ namespace pinjaw::part {
 namespace {
 
 constexpr double kKgPerMm3AtOneGPerCm3 = 1e-6;
+constexpr std::size_t kMostFileBytes = 512U << 20U;  // chosen: reading takes some twenty times as much memory
 
 std::string lower_case(std::string text) {
   std::ranges::transform(text, text.begin(),
@@ -86,20 +89,36 @@ std::optional<model::Profile> profile_in_plan(const std::optional<model::Profile
 
 /// Everything of `source` that OpenCASCADE has to be asked.
 base::Expected<BrepValues> brep_values(const model::PartSource& source, const std::string& bytes,
-                                       const Selection& selection) {
+                                       const Selection& selection, const base::IsolatedStage& stage) {
   const std::string file = source.file.string();
+  stage("reading its solids");
   const auto solids = solids_of(source, bytes);
   if (!solids) return tl::unexpected(solids.error());
   const auto chosen = selected(*solids, selection, file);
   if (!chosen) return tl::unexpected(chosen.error());
-  auto values = values_of(*solids, *chosen, source.up);
+  auto values = values_of(*solids, *chosen, source.up, stage);
+  if (!values) return base::failure(file + ": " + values.error().message);
+  return values;
+}
+
+/// The same, asked where OpenCASCADE can do no harm.
+base::Expected<BrepValues> values_in_cad_process(const model::PartSource& source, const std::string& bytes,
+                                                 const Selection& selection) {
+  const std::string file = source.file.string();
+  const auto answer = in_cad_process(file, [&](const base::IsolatedStage& stage) {
+    return brep_values(source, bytes, selection, stage).map([](const BrepValues& values) {
+      return packed(values);
+    });
+  });
+  if (!answer) return tl::unexpected(answer.error());
+  auto values = unpacked(*answer);
   if (!values) return base::failure(file + ": " + values.error().message);
   return values;
 }
 
 base::Expected<Part> read_brep(const model::PartSource& source, const std::string& bytes,
                                const Selection& selection) {
-  auto values = brep_values(source, bytes, selection);
+  auto values = values_in_cad_process(source, bytes, selection);
   if (!values) return tl::unexpected(values.error());
   const Eigen::Matrix3d rotation = upright_rotation(source.up);
   Part part = placed(std::move(*values), rotation);
@@ -131,7 +150,7 @@ base::Expected<Part> read_mesh(const model::PartSource& source, const std::strin
 base::Expected<Part> read_part(const model::PartSource& source, const Selection& selection) {
   const std::string file = source.file.string();
   if (!(source.up.norm() > 0) || !source.up.allFinite()) return base::failure(file + ": up has no direction");
-  const auto bytes = base::read_file(source.file);
+  const auto bytes = base::read_file(source.file, kMostFileBytes);
   if (!bytes) return base::failure(file + ": " + bytes.error().message);
   const bool from_mesh = !source.profile && is_stl(source.file);
   auto part = from_mesh ? read_mesh(source, *bytes, selection) : read_brep(source, *bytes, selection);

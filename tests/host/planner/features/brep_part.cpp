@@ -58,7 +58,8 @@ T must(base::Expected<T> value) {
 
 part::Part part_of(const part::Shape& shape, const Eigen::Matrix3d& rotation) {
   part::Part part = part::placed(
-      must(part::values_of({{"made", shape}}, {{"made", shape}}, rotation.transpose() * Vector3d::UnitZ())),
+      must(part::values_of({{"made", shape}}, {{"made", shape}}, rotation.transpose() * Vector3d::UnitZ(),
+                           [](std::string_view /*doing*/) {})),
       rotation);
   part.name = "made";
   return part;
