@@ -68,7 +68,8 @@ TEST(PlanJson, tells_the_path_of_every_damaged_field) {
   document["designs"][1]["pins"][0]["col"] = "two";
   document["designs"][2]["squeeze"].erase("required_n");
   const std::string message = message_of(document);
-  EXPECT_NE(message.find("designs[1].pins[0].col: expected a whole number, found \"two\""), std::string::npos)
+  EXPECT_NE(message.find("designs[1].pins[0].col: expected the number of a hole from 0 to 63, found \"two\""),
+            std::string::npos)
       << message;
   EXPECT_NE(message.find("designs[2].squeeze.required_n: missing"), std::string::npos) << message;
   EXPECT_NE(message.find("2 mistakes"), std::string::npos) << message;
