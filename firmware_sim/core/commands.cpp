@@ -14,7 +14,6 @@ using wire::CommandResult;
 using wire::Reason;
 
 constexpr std::uint16_t kChallenge_ms = 3000;  // section 2.6
-constexpr std::uint16_t kSessionBlock = 16;    // chosen: one store for so many sessions
 
 /// Answers to commands that are not looked at further; nothing for one that is.
 std::optional<Answer> turned_away(Admission admission) {

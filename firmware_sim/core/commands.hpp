@@ -5,6 +5,8 @@
 /// What hosts ask for. Every command is answered; one that is refused changes no output and says why.
 namespace pinjaw::core {
 
+inline constexpr std::uint16_t kSessionBlock = 16;  // chosen: one store for so many sessions
+
 struct Answer {
   wire::CommandResult result = wire::CommandResult::Ok;
   wire::Reason reason = wire::Reason::None;

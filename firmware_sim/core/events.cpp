@@ -14,7 +14,6 @@ using Occurrence = std::optional<Event>;
 constexpr std::uint16_t kContact_ms = 80;   // section 3: seat dwell
 constexpr std::uint16_t kBlocked_ms = 400;  // chosen: time for the push that breaks loose a jaw that sticks
 constexpr std::uint8_t kBadHold_ms = 3;     // I5
-constexpr std::uint16_t kPeerGood_ms = 60;  // three cycles of 20 ms
 
 /// Three quarters of F_light press: what stands still now is stopped by something.
 bool presses(const State& state) {

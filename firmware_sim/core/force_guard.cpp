@@ -10,12 +10,6 @@ namespace {
 constexpr std::uint16_t kOver_ms = 3;    // I5
 constexpr std::uint16_t kUnder_ms = 20;  // chosen: a valve's time, so that the cut-off does not chatter
 
-std::uint16_t counted(std::uint16_t ms, bool going_on, std::uint32_t elapsed_ms) {
-  return going_on
-             ? static_cast<std::uint16_t>(std::min<std::uint32_t>(ms + std::min(elapsed_ms, 1000U), 1000U))
-             : std::uint16_t{0};
-}
-
 }  // namespace
 
 Valves guarded(const Config& config, std::int32_t limit_dn, const Sensors& sensors, std::uint32_t elapsed_ms,

@@ -35,9 +35,9 @@ void take_up_layout(State& state, const wire::Layout& layout, const LayoutBlob& 
 }
 
 /// An answer under construction.
-class Answer {
+class ServiceAnswer {
  public:
-  Answer(std::uint8_t service, std::uint8_t transaction, TransferStatus status) : out_(bytes_) {
+  ServiceAnswer(std::uint8_t service, std::uint8_t transaction, TransferStatus status) : out_(bytes_) {
     out_.put(service | wire::kResponseBit, 1);
     out_.put(transaction, 1);
     out_.put(static_cast<std::uint8_t>(status), 1);
@@ -51,11 +51,11 @@ class Answer {
 };
 
 void answer_status(State& state, std::uint8_t service, std::uint8_t transaction, TransferStatus status) {
-  Answer(service, transaction, status).start(state.service.sender);
+  ServiceAnswer(service, transaction, status).start(state.service.sender);
 }
 
 void answer_commit(State& state, std::uint8_t transaction) {
-  Answer answer(static_cast<std::uint8_t>(wire::Service::Commit), transaction, TransferStatus::Ok);
+  ServiceAnswer answer(static_cast<std::uint8_t>(wire::Service::Commit), transaction, TransferStatus::Ok);
   answer.body().put(state.layouts.crc, 4);
   answer.start(state.service.sender);
 }
@@ -93,7 +93,7 @@ TransferStatus commit(State& state, std::uint32_t crc) {
 
 void serve_write(State& state, std::uint8_t transaction, std::span<const std::uint8_t> body) {
   const TransferStatus status = write(state, body);
-  Answer answer(static_cast<std::uint8_t>(wire::Service::Write), transaction, status);
+  ServiceAnswer answer(static_cast<std::uint8_t>(wire::Service::Write), transaction, status);
   if (status == TransferStatus::Ok) {
     answer.body().put(wire::layout_crc_of(*wire::decode_layout(body)), 4);
   }
@@ -117,14 +117,14 @@ void serve_readback(State& state, std::uint8_t transaction) {
   const std::span<const std::uint8_t> layout = bytes_of(state.layouts.blob);
   if (!state.layouts.committed)
     return answer_status(state, service, transaction, TransferStatus::NothingStaged);
-  Answer answer(service, transaction, TransferStatus::Ok);
+  ServiceAnswer answer(service, transaction, TransferStatus::Ok);
   for (const std::uint8_t byte : layout) answer.body().put(byte, 1);
   answer.start(state.service.sender);
 }
 
 void serve_identify(State& state, std::uint8_t transaction) {
   const wire::LayoutTarget target = target_of(state.config);
-  Answer answer(static_cast<std::uint8_t>(wire::Service::Identify), transaction, TransferStatus::Ok);
+  ServiceAnswer answer(static_cast<std::uint8_t>(wire::Service::Identify), transaction, TransferStatus::Ok);
   wire::Identification{.node = target.node,
                        .node_class = target.node_class,
                        .kit_id = target.kit_id,
@@ -139,7 +139,7 @@ void serve_identify(State& state, std::uint8_t transaction) {
 }
 
 void serve_log(State& state, std::uint8_t transaction) {
-  Answer answer(static_cast<std::uint8_t>(wire::Service::Log), transaction, TransferStatus::Ok);
+  ServiceAnswer answer(static_cast<std::uint8_t>(wire::Service::Log), transaction, TransferStatus::Ok);
   answer.body().put(state.counters.bad_frames, 4);
   answer.body().put(state.counters.events_ignored, 4);
   answer.body().put(state.counters.events_refused, 4);

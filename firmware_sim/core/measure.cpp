@@ -19,11 +19,6 @@ std::int32_t filtered(std::int32_t old_ubar, std::int32_t reading_mbar, std::int
   return old_ubar + (reading_mbar * 1000 - old_ubar) / kFilter_ms * step;
 }
 
-std::uint16_t counted(std::uint16_t ms, bool going_on, std::uint32_t elapsed_ms) {
-  if (!going_on) return 0;
-  return static_cast<std::uint16_t>(std::min<std::uint32_t>(ms + std::min(elapsed_ms, 1000U), 60000U));
-}
-
 SensorTrouble trouble_of(const Config& config, const Sensors& sensors) {
   if (config.passive) return SensorTrouble::None;
   for (const std::int32_t reading_mbar :
@@ -61,6 +56,11 @@ void observe_pressures(const Config& config, const Sensors& sensors, std::int32_
 }
 
 }  // namespace
+
+std::uint16_t counted(std::uint16_t ms, bool going_on, std::uint32_t elapsed_ms) {
+  if (!going_on) return 0;
+  return static_cast<std::uint16_t>(std::min<std::uint32_t>(ms + std::min(elapsed_ms, 1000U), 60000U));
+}
 
 void observe(const Config& config, const Sensors& sensors, std::uint32_t elapsed_ms, Measurement& m) {
   observe_pressures(config, sensors, static_cast<std::int32_t>(std::min(elapsed_ms, 1000U)), m);

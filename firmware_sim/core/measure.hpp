@@ -39,6 +39,9 @@ struct Measurement {
   std::int32_t supply_mbar = 0;
 };
 
+/// How long something has been going on that had been for `ms` before this step; a minute stands for more.
+std::uint16_t counted(std::uint16_t ms, bool going_on, std::uint32_t elapsed_ms);
+
 /// Takes in one step's readings.
 void observe(const Config& config, const Sensors& sensors, std::uint32_t elapsed_ms,
              Measurement& measurement);

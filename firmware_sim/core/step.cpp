@@ -18,7 +18,6 @@ namespace pinjaw::core {
 namespace {
 
 constexpr int kEventsPerStep = 4;  // boot, recovery and what follows settle in one step; no chain is longer
-constexpr std::uint16_t kSessionBlock = 16;
 
 /// Takes each parsed message to whom it concerns.
 struct Listener {

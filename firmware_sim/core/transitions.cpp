@@ -12,7 +12,6 @@ namespace {
 constexpr std::uint16_t kSqueeze_ms = 2000;
 constexpr std::uint16_t kInDoubt_ms = 2000;
 constexpr std::uint16_t kOffer_ms = 30000;
-constexpr std::uint16_t kPeerGood_ms = 60;  // three cycles of 20 ms
 constexpr std::uint16_t kWatch_ms = 200;
 constexpr std::int32_t kMoveBase_ms = 500;
 constexpr std::int32_t kSlowest_10um_per_ms = 3;  // 30 mm/s

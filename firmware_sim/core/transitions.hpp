@@ -4,6 +4,8 @@
 
 namespace pinjaw::core {
 
+inline constexpr std::uint16_t kPeerGood_ms = 60;  // three cycles of 20 ms
+
 /// What the table makes of `event` in the present state, done: the change of state with its actions, or the
 /// note of an event that changes none. False where the table ignores or refuses it; then nothing but a
 /// counter changes.

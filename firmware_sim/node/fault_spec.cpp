@@ -5,6 +5,8 @@
 #include <cmath>
 #include <optional>
 
+#include "firmware_sim/node/units.hpp"
+
 namespace pinjaw::node {
 namespace {
 
@@ -27,7 +29,6 @@ constexpr std::array kKnown = {
     Known{"nvm_failed", Fault::Kind::NvmFailed, ""},
 };
 
-constexpr double kPa_per_mbar = 100.0;
 constexpr double kLeakReference_Pa = 6e5;  // absolute: a leak is told at 5 bar gauge
 
 tl::unexpected<std::string> wrong(std::string why) {

@@ -2,18 +2,15 @@
 
 #include <cmath>
 
+#include "firmware_sim/node/units.hpp"
+
 namespace pinjaw::node {
 namespace {
 
 constexpr double kUdnPerMbarPerM2 = 1e9;       // 1 mbar on 1 m2 is 100 N, in units of 1e-7 N
 constexpr std::uint8_t kSeatSwitches = 0b111;  // three pins locate on a passive station (BB 3.6)
 
-std::int32_t whole(double value) {
-  return static_cast<std::int32_t>(std::lround(value));
-}
-
 constexpr double kPa_per_bar = 1e5;
-constexpr double kPa_per_mbar = 1e2;
 
 void set(double& value, const std::optional<double>& figure, double unit) {
   if (figure) value = *figure * unit;

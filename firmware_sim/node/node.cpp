@@ -3,18 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "firmware_sim/node/units.hpp"
+
 namespace pinjaw::node {
 namespace {
 
 constexpr int kPlantSteps = 50;     // of plant::kStep_s in 1 ms
 constexpr int kFramesPerStep = 64;  // chosen: a controller's receive buffer; 1 ms of 500 kbit/s brings four
-constexpr double kPa_per_mbar = 100.0;
 constexpr double k10um_per_m = 1e5;
 constexpr double kMoving_m_s = 0.01;
-
-std::int32_t whole(double value) {
-  return static_cast<std::int32_t>(std::lround(value));
-}
 
 plant::Spool plant_spool(core::Spool spool) {
   switch (spool) {

@@ -16,14 +16,14 @@ namespace {
 
 std::atomic<bool> writing = false;
 std::atomic<bool> interrupted = false;
-std::atomic<bool> live_line = false;
+std::atomic<bool> live_line_shown = false;
 static_assert(std::atomic<bool>::is_always_lock_free);
 
 /// Calls only what a signal handler may.
 [[noreturn]] void end() {
   base::drop_unfinished_file();
   constexpr std::string_view kErased = "\r\033[K";
-  if (live_line) (void)!::write(STDERR_FILENO, kErased.data(), kErased.size());
+  if (live_line_shown) (void)!::write(STDERR_FILENO, kErased.data(), kErased.size());
   std::_Exit(static_cast<int>(ExitCode::Interrupted));
 }
 
@@ -42,7 +42,7 @@ void end_when_interrupted() {
 }
 
 void shows_live_line(bool shown) {
-  live_line = shown;
+  live_line_shown = shown;
 }
 
 Uninterrupted::Uninterrupted() {

@@ -10,6 +10,8 @@
 
 namespace pinjaw::app {
 
+inline constexpr double kAnswerS = 2;  ///< chosen: after it, a controller counts as not there
+
 /// A host of its own for one command: a heartbeat with a fresh epoch on a CAN interface, for as long as it
 /// lives.
 class Talk {

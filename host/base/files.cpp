@@ -12,6 +12,8 @@
 #include <optional>
 #include <system_error>
 
+#include "host/base/write_all.hpp"
+
 namespace pinjaw::base {
 namespace {
 
@@ -40,16 +42,6 @@ class Descriptor {
  private:
   int number_;
 };
-
-bool write_all(int descriptor, std::string_view bytes) {
-  while (!bytes.empty()) {
-    const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) return false;
-    bytes.remove_prefix(static_cast<std::size_t>(written));
-  }
-  return true;
-}
 
 tl::unexpected<Failure> cannot_write(const std::filesystem::path& path, int error) {
   return failure("cannot write " + path.string() + ": " + reason(error));

@@ -23,6 +23,8 @@
 #include <system_error>
 #include <thread>
 
+#include "host/base/write_all.hpp"
+
 namespace pinjaw::base {
 namespace {
 
@@ -70,16 +72,6 @@ std::optional<Message> next_message(std::string_view& bytes) {
 }
 
 // The child's side.
-
-bool write_all(int pipe, std::string_view bytes) {
-  while (!bytes.empty()) {
-    const ssize_t written = ::write(pipe, bytes.data(), bytes.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) return false;
-    bytes.remove_prefix(static_cast<std::size_t>(written));
-  }
-  return true;
-}
 
 bool send(int pipe, Message::Kind kind, std::string_view content) {
   const Head head = head_of(kind, content);

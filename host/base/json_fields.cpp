@@ -10,7 +10,7 @@ namespace pinjaw::base {
 
 namespace {
 
-std::string shown(const nlohmann::json& value) {
+std::string shown_json(const nlohmann::json& value) {
   if (value.is_array()) return fmt::format("a list of {}", value.size());
   if (value.is_object()) return "an object";
   std::string text = value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
@@ -163,7 +163,7 @@ void JsonField::mistake(std::string message) const {
 }
 
 void JsonField::expected(std::string_view what) const {
-  mistake(fmt::format("expected {}, found {}", what, shown(*value_)));
+  mistake(fmt::format("expected {}, found {}", what, shown_json(*value_)));
 }
 
 Checked<nlohmann::json> parse_json(std::string_view text, const std::string& file) {

@@ -13,7 +13,7 @@ namespace pinjaw::base {
 namespace {
 
 /// The text as it can stand in a message: one line, not long.
-std::string shown(std::string_view text) {
+std::string shown_text(std::string_view text) {
   constexpr std::size_t kLongest = 60;  // chosen: a line of a terminal with the place before it
   std::string line;
   for (const char each : text.substr(0, kLongest))
@@ -29,9 +29,9 @@ std::string found(const YamlNode& node) {
     case YamlNode::Kind::Nothing:
       return "nothing";
     case YamlNode::Kind::Plain:
-      return shown(node.text);
+      return shown_text(node.text);
     case YamlNode::Kind::Quoted:
-      return "the quoted text " + shown(node.text);
+      return "the quoted text " + shown_text(node.text);
     case YamlNode::Kind::List:
       return fmt::format("a list of {}", node.items.size());
     case YamlNode::Kind::Map:

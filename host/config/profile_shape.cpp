@@ -9,12 +9,9 @@ namespace pinjaw::config {
 namespace {
 
 using geometry::Arc;
+using geometry::cross;
 using geometry::Curve;
 using geometry::Segment;
-
-double cross(const Vector2d& a, const Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
 
 Vector2d on_arc(const Arc& arc, double share) {
   return arc.center_mm + arc.radius_mm * geometry::direction(arc.from_rad + share * arc.sweep_rad);

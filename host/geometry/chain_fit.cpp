@@ -18,10 +18,6 @@ constexpr std::size_t kLeastArcPoints = 4;  // three points lie on a circle alwa
 constexpr double kMostRadiusMm = 1e5;       // chosen: flatter than any arc that a pin could tell from a line
 constexpr std::size_t kMostBreaks = 9;      // places tried for one break; clean chains leave one or two
 
-double cross(const Vector2d& a, const Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
-
 /// A curve fitted to a run and the sum of its squared distances.
 struct Fit {
   FittedPiece piece;

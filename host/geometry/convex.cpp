@@ -9,14 +9,6 @@
 namespace pinjaw::geometry {
 namespace {
 
-Vector2d across(const Vector2d& v) {
-  return {-v.y(), v.x()};
-}
-
-double cross(const Vector2d& a, const Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
-
 double distance_mm(const Vector2d& p_mm, const Segment& piece) {
   const Vector2d d_mm = piece.b_mm - piece.a_mm;
   const double d2 = d_mm.squaredNorm();

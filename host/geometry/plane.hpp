@@ -46,6 +46,16 @@ Vector2d tangent_at(const Curve& curve, double along_mm);
 /// The unit vector at angle `angle_rad` from +x.
 Vector2d direction(double angle_rad);
 
+/// `v` turned by a quarter, counter-clockwise.
+inline Vector2d across(const Vector2d& v) {
+  return {-v.y(), v.x()};
+}
+
+/// The z component of the cross product: positive where `b` points to the left of `a`.
+inline double cross(const Vector2d& a, const Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
 /// `angle_rad` brought into [0, 2 pi).
 double wrapped_rad(double angle_rad);
 

@@ -6,7 +6,7 @@
 namespace pinjaw::geometry {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kMissed_mm = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
@@ -22,12 +22,12 @@ RayTest::RayTest(const Ray& ray) : origin_mm_(ray.origin_mm), direction_(ray.dir
 
 double RayTest::entry_mm(const Box& box) const {
   double near_mm = 0;
-  double far_mm = kInfinity;
+  double far_mm = kMissed_mm;
   for (int axis = 0; axis < 3; ++axis) {
     const double lo_mm = box.lo[axis] - kTouch_mm - origin_mm_[axis];
     const double hi_mm = box.hi[axis] + kTouch_mm - origin_mm_[axis];
     if (direction_[axis] == 0) {
-      if (lo_mm > 0 || hi_mm < 0) return kInfinity;
+      if (lo_mm > 0 || hi_mm < 0) return kMissed_mm;
       continue;
     }
     const double at_lo_mm = lo_mm / direction_[axis];
@@ -35,7 +35,7 @@ double RayTest::entry_mm(const Box& box) const {
     near_mm = std::max(near_mm, std::min(at_lo_mm, at_hi_mm));
     far_mm = std::min(far_mm, std::max(at_lo_mm, at_hi_mm));
   }
-  if (near_mm > far_mm) return kInfinity;
+  if (near_mm > far_mm) return kMissed_mm;
   return near_mm;
 }
 

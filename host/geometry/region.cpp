@@ -8,14 +8,6 @@ namespace {
 
 constexpr Interval kNothing{1, 0};
 
-Vector2d across(const Vector2d& v) {
-  return {-v.y(), v.x()};
-}
-
-double cross(const Vector2d& a, const Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
-
 /// The part of a + t d inside the disc. Half the chord comes from the distance of the line, which loses
 /// nothing on long pieces, rather than from the discriminant.
 Interval clip_to_disc(const Vector2d& a_mm, const Vector2d& d_mm, const Vector2d& center_mm,

@@ -13,10 +13,10 @@ namespace {
 
 using geometry::Vector2d;
 
-constexpr double kMarginMm = 12;
+constexpr double kDrawingMarginMm = 12;
 constexpr double kFootMm = 16;  // title and scale bar
 
-struct Box {
+struct CurvesBox {
   double x_lo = std::numeric_limits<double>::infinity();
   double x_hi = -std::numeric_limits<double>::infinity();
   double y_lo = std::numeric_limits<double>::infinity();
@@ -89,20 +89,20 @@ std::string escaped(const std::string& text) {
 }  // namespace
 
 std::string features_svg(const FeaturesDrawing& drawing) {
-  Box box;
+  CurvesBox box;
   for (const model::Feature& feature : drawing.features) box.add(feature.curve);
   for (const geometry::Curve& curve : drawing.seen_from_gripper) box.add(curve);
   if (!std::isfinite(box.x_lo)) box = {0, 50, 0, 20};
-  const double width = std::max(110.0, box.x_hi - box.x_lo + 2 * kMarginMm);
-  const double height = box.y_hi - box.y_lo + 2 * kMarginMm + kFootMm;
-  const double foot_y = -box.y_lo + kMarginMm + 4;
+  const double width = std::max(110.0, box.x_hi - box.x_lo + 2 * kDrawingMarginMm);
+  const double height = box.y_hi - box.y_lo + 2 * kDrawingMarginMm + kFootMm;
+  const double foot_y = -box.y_lo + kDrawingMarginMm + 4;
 
   std::string svg = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.2f}mm\" height=\"{1:.2f}mm\" viewBox=\"{2:.3f} "
       "{3:.3f} {0:.3f} "
       "{1:.3f}\">\n<title>{4}</title>\n<rect x=\"{2:.3f}\" y=\"{3:.3f}\" width=\"100%\" height=\"100%\" "
       "fill=\"#fff\"/>\n",
-      width, height, box.x_lo - kMarginMm, -box.y_hi - kMarginMm, escaped(drawing.title));
+      width, height, box.x_lo - kDrawingMarginMm, -box.y_hi - kDrawingMarginMm, escaped(drawing.title));
   svg += "<g transform=\"scale(1 -1)\" fill=\"none\">\n";
   for (const geometry::Curve& curve : drawing.seen_from_gripper) {
     svg += path(curve, {0, geometry::length_mm(curve)}, "stroke=\"#999\" stroke-width=\"0.25\"");

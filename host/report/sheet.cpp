@@ -12,8 +12,8 @@
 namespace pinjaw::report {
 namespace {
 
-constexpr double kMarginMm = 8;  // chosen: what office printers leave blank, and a little
-constexpr double kCellMm = 11;   // height of a cell: a caption and a value
+constexpr double kPaperMarginMm = 8;  // chosen: what office printers leave blank, and a little
+constexpr double kCellMm = 11;        // height of a cell: a caption and a value
 constexpr double kTableRowMm = 5.5;
 constexpr double kBarMm = 50;
 constexpr double kLeastWidthMm = 186;  // of the blocks of text; fits A4 upright
@@ -39,7 +39,7 @@ Text fitted(Text text, double most_mm) {
 
 /// A strip of the paper that blocks of text fill from the top down.
 struct Strip {
-  double x_mm = kMarginMm;
+  double x_mm = kPaperMarginMm;
   double width_mm = 0;
 };
 
@@ -52,16 +52,17 @@ class SheetLayout {
   Picture picture() {
     picture_.title = fmt::format("set-up sheet {} {}", sheet_.task, sheet_.design.id);
     choose_paper();
-    const Strip whole{kMarginMm, picture_.paper.width_mm - 2 * kMarginMm};
+    const Strip whole{kPaperMarginMm, picture_.paper.width_mm - 2 * kPaperMarginMm};
     strip_ = whole;
     draw_header();
     const double plates_top_mm = y_mm_;
     const double free_mm = beside_ ? 0 : whole.width_mm - plates_.width_mm();
-    draw_plates(sheet_, {kMarginMm + free_mm / 2 - plates_.least_mm.x(), plates_top_mm + plates_.most_mm.y()},
+    draw_plates(sheet_,
+                {kPaperMarginMm + free_mm / 2 - plates_.least_mm.x(), plates_top_mm + plates_.most_mm.y()},
                 picture_);
     const double plates_end_mm = plates_top_mm + plates_.height_mm() + 2;
     if (beside_) {
-      strip_ = {kMarginMm + plates_.width_mm() + 2, whole.width_mm - plates_.width_mm() - 2};
+      strip_ = {kPaperMarginMm + plates_.width_mm() + 2, whole.width_mm - plates_.width_mm() - 2};
       draw_force();
       draw_table();
       strip_ = whole;
@@ -99,7 +100,7 @@ class SheetLayout {
         kHeaderMm + kBarAndNotesMm + std::max(plates_.height_mm(), 5 * kCellMm + table_mm()));
     const std::array<Choice, 4> choices = {
         {{{210, 297}, false}, {{297, 210}, true}, {{297, 420}, false}, {{420, 297}, true}}};
-    const Vector2d margins_mm(2 * kMarginMm, 2 * kMarginMm);
+    const Vector2d margins_mm(2 * kPaperMarginMm, 2 * kPaperMarginMm);
     for (const Choice& choice : choices) {
       const Vector2d need_mm = (choice.beside ? beside_mm : under_mm) + margins_mm;
       beside_ = choice.beside;
@@ -145,8 +146,8 @@ class SheetLayout {
   }
 
   void draw_header() {
-    text(kMarginMm, y_mm_ + 5, "Gripper set-up sheet", 5, true);
-    text(kMarginMm + strip_.width_mm, y_mm_ + 5, "pinjaw, scale 1:1", 3, false, 0.3, Align::Right);
+    text(kPaperMarginMm, y_mm_ + 5, "Gripper set-up sheet", 5, true);
+    text(kPaperMarginMm + strip_.width_mm, y_mm_ + 5, "pinjaw, scale 1:1", 3, false, 0.3, Align::Right);
     y_mm_ += 8;
     const model::Design& design = sheet_.design;
     draw_cells({{"task", sheet_.task, 3, true},
@@ -167,7 +168,7 @@ class SheetLayout {
   }
 
   void draw_scale_bar() {
-    const double x_mm = kMarginMm;
+    const double x_mm = kPaperMarginMm;
     const double y_mm = y_mm_ + 3;
     rule({x_mm, y_mm}, {x_mm + kBarMm, y_mm}, 0.4);
     for (int i = 0; i <= 5; ++i) {
@@ -245,7 +246,7 @@ class SheetLayout {
     };
     for (const std::string& note : notes) {
       y_mm_ += 4;
-      const Text line{{kMarginMm, y_mm_ - 0.8}, note, 2.6, Align::Left, false, 0.2};
+      const Text line{{kPaperMarginMm, y_mm_ - 0.8}, note, 2.6, Align::Left, false, 0.2};
       picture_.texts.push_back(fitted(line, strip_.width_mm));
     }
   }
@@ -255,7 +256,7 @@ class SheetLayout {
   Picture picture_;
   Strip strip_;
   bool beside_ = false;
-  double y_mm_ = kMarginMm;
+  double y_mm_ = kPaperMarginMm;
 };
 
 }  // namespace

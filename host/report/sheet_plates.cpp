@@ -16,7 +16,7 @@ constexpr double kCalloutPitchMm = 9;    // two lines of text
 constexpr double kDimensionDropMm = 13;  // below the lower of plates and part
 constexpr double kGapMm = 3;
 
-struct Box {
+struct PlatesBox {
   Vector2d least_mm;
   Vector2d most_mm;
   void add(const Vector2d& p_mm) {
@@ -39,9 +39,9 @@ PlateEdges plate_edges(const Sheet& sheet) {
           (grid.rows - 1) * grid.spacing_mm / 2 + grid.edge_offset_mm};
 }
 
-Box body_box(const Sheet& sheet) {
+PlatesBox body_box(const Sheet& sheet) {
   const PlateEdges plate = plate_edges(sheet);
-  Box box{{-plate.outer_mm, -plate.half_height_mm}, {plate.outer_mm, plate.half_height_mm}};
+  PlatesBox box{{-plate.outer_mm, -plate.half_height_mm}, {plate.outer_mm, plate.half_height_mm}};
   for (const SheetEdge& edge : sheet.edges) {
     for (const Vector2d& p_mm : edge.points_mm) box.add(sheet.design.part_pose * p_mm);
   }
@@ -240,13 +240,13 @@ class PlatesDrawing {
   const Sheet& sheet_;
   Vector2d origin_mm_;
   Picture& picture_;
-  Box body_;
+  PlatesBox body_;
 };
 
 }  // namespace
 
 PlatesExtent plates_extent(const Sheet& sheet) {
-  const Box body = body_box(sheet);
+  const PlatesBox body = body_box(sheet);
   return {body.least_mm - Vector2d(kCalloutWidthMm, kDimensionDropMm),
           body.most_mm + Vector2d(kCalloutWidthMm, 6)};
 }

@@ -10,11 +10,11 @@ namespace pinjaw::fuzz {
 namespace {
 
 template <class T>
-using Reader = config::Read<T> (*)(const std::filesystem::path&);
+using YamlReader = config::Read<T> (*)(const std::filesystem::path&);
 
 /// A target that reads a YAML file and gives each value that comes out to `holds`.
 template <class T>
-Target yaml(const std::string& name, Reader<T> read, std::vector<std::string> seeds,
+Target yaml(const std::string& name, YamlReader<T> read, std::vector<std::string> seeds,
             const std::function<void(const T&)>& holds = {}) {
   seeds.push_back("tests/bad_files/" + name);
   return {name,

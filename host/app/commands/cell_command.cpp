@@ -14,7 +14,7 @@ namespace pinjaw::app {
 
 namespace {
 
-struct Options {
+struct CellOptions {
   std::string cell;
   std::string output;
   PlanningOptions planning;
@@ -44,7 +44,7 @@ std::string summary_of(const cell::CellPlan& plan) {
   return text;
 }
 
-void run_cell(Context& context, const Options& options) {
+void run_cell(Context& context, const CellOptions& options) {
   if (options.planning.top == "all") {
     return context.fail(ExitCode::Usage,
                         "--top: a cell may have billions of combinations; give a number, not all");
@@ -64,7 +64,7 @@ void run_cell(Context& context, const Options& options) {
 }  // namespace
 
 void add_cell(CLI::App& app, Context& context) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CellOptions>();
   CLI::App* command =
       app.add_subcommand("cell", "designs for every station of a cell that can hand the part over");
   command->add_option("CELL", options->cell, "cell file")->type_name("")->check(file_name())->required();

@@ -15,7 +15,7 @@ namespace pinjaw::app {
 
 namespace {
 
-struct Options {
+struct CheckOptions {
   std::string plan;
   std::string design;
   bool all = false;
@@ -57,7 +57,7 @@ class Verdict {
   std::vector<planner::Claim> claims_;
 };
 
-void run_check(Context& context, const Options& options) {
+void run_check(Context& context, const CheckOptions& options) {
   const auto plan = planner::read_plan(options.plan);
   if (!plan) return context.fail(plan.error(), "nothing was checked");
   const model::Design* only = options.design.empty() ? nullptr : find_design(plan->designs, options.design);
@@ -91,7 +91,7 @@ void run_check(Context& context, const Options& options) {
 }  // namespace
 
 void add_check(CLI::App& app, Context& context) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CheckOptions>();
   CLI::App* command = app.add_subcommand("check", "recompute every claim of a plan from its stated numbers");
   command->add_option("PLAN", options->plan, "plan JSON")->type_name("")->check(file_name())->required();
   command->add_option("--design", options->design, "only this design (an id, or best)")->type_name("ID");

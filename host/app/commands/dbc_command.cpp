@@ -10,12 +10,12 @@ namespace pinjaw::app {
 
 namespace {
 
-struct Options {
+struct DbcOptions {
   std::string output;
   std::vector<int> nodes;
 };
 
-void run_dbc(Context& context, const Options& options) {
+void run_dbc(Context& context, const DbcOptions& options) {
   std::vector<std::uint8_t> nodes;
   for (const int node : options.nodes) nodes.push_back(static_cast<std::uint8_t>(node));
   std::ranges::sort(nodes);
@@ -27,7 +27,7 @@ void run_dbc(Context& context, const Options& options) {
 }  // namespace
 
 void add_dbc(CLI::App& app, Context& context) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<DbcOptions>();
   CLI::App* command = app.add_subcommand("dbc", "the messages of the bus as a DBC file (JSON with --json)");
   command->add_option("-o,--output", options->output, "without it the DBC goes to stdout")->type_name("FILE");
   command->add_option("--nodes", options->nodes, "only these nodes, e.g. 1,2,3")

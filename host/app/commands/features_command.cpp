@@ -15,7 +15,7 @@ namespace pinjaw::app {
 
 namespace {
 
-struct Options {
+struct FeaturesOptions {
   std::string task;
   std::string output;
 };
@@ -67,7 +67,7 @@ bool is_known_ending(const std::string& output) {
   return output.empty() || output == "-" || output.ends_with(".json") || output.ends_with(".svg");
 }
 
-void run_features(Context& context, const Options& options) {
+void run_features(Context& context, const FeaturesOptions& options) {
   if (!is_known_ending(options.output)) {
     return context.fail(ExitCode::Usage,
                         "--output: expected a name that ends in .json or .svg, found " + options.output);
@@ -100,7 +100,7 @@ void run_features(Context& context, const Options& options) {
 }  // namespace
 
 void add_features(CLI::App& app, Context& context) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<FeaturesOptions>();
   CLI::App* command = app.add_subcommand("features", "the edges of a part that a pin can touch");
   command->add_option("TASK", options->task, "task file")->type_name("")->check(file_name())->required();
   command->add_option("-o,--output", options->output, "FILE.json or FILE.svg; without it JSON to stdout")

@@ -14,16 +14,14 @@ namespace pinjaw::app {
 
 namespace {
 
-struct Options {
+struct JawOptions {
   int node = 0;
   int peer = 0;
   double force_n = 0;
   double permit_n = 0;
 };
 
-using Operation = std::function<void(jaw_client::Client&, std::uint8_t, const Options&)>;
-
-constexpr double kAnswerS = 2;
+using Operation = std::function<void(jaw_client::Client&, std::uint8_t, const JawOptions&)>;
 
 bool hear(Talk& talk, std::uint8_t node) {
   const jaw_client::NodeView& view = talk.client().node(node);
@@ -76,7 +74,7 @@ void print_status(const Context& context, const jaw_client::NodeView& view, int 
   }
 }
 
-void run_status(Context& context, const Options& options) {
+void run_status(Context& context, const JawOptions& options) {
   const std::unique_ptr<Talk> talk = Talk::open(context);
   const auto node = static_cast<std::uint8_t>(options.node);
   if (talk && hear(*talk, node)) print_status(context, talk->client().node(node), options.node);
@@ -84,7 +82,8 @@ void run_status(Context& context, const Options& options) {
 
 /// One action as a host of its own: heartbeat, permission, ARM where the action needs a session, the action,
 /// its end.
-void run_operation(Context& context, const Options& options, bool needs_session, const Operation& operation) {
+void run_operation(Context& context, const JawOptions& options, bool needs_session,
+                   const Operation& operation) {
   const std::unique_ptr<Talk> talk = Talk::open(context);
   const auto node = static_cast<std::uint8_t>(options.node);
   if (!talk || !hear(*talk, node)) return;
@@ -97,7 +96,7 @@ void run_operation(Context& context, const Options& options, bool needs_session,
   print_status(context, talk->client().node(node), options.node);
 }
 
-wire::SqueezeForces forces_of(const Options& options) {
+wire::SqueezeForces forces_of(const JawOptions& options) {
   const auto tenths_of = [](double force_n) { return static_cast<std::uint16_t>(std::lround(force_n * 10)); };
   return {tenths_of(options.force_n), tenths_of(options.permit_n)};
 }
@@ -110,7 +109,7 @@ struct Verb {
 };
 
 std::vector<Verb> verbs() {
-  const auto peer = [](const Options& o) { return static_cast<std::uint8_t>(o.peer); };
+  const auto peer = [](const JawOptions& o) { return static_cast<std::uint8_t>(o.peer); };
   return {
       {"hold", "keep holding, whatever is going on", false, [](auto& c, auto n, auto&) { c.hold(n); }},
       {"close", "close lightly on a part (needs the local enable)", true,
@@ -133,7 +132,7 @@ void add_jaw(CLI::App& app, Context& context) {
   CLI::App* command = app.add_subcommand("jaw", "one controller, by hand");
   command->require_subcommand(1);
   command->fallthrough();
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<JawOptions>();
   for (const Verb& verb : verbs()) {
     CLI::App* sub = command->add_subcommand(verb.name, verb.help);
     sub->add_option("--node", options->node, "the controller, 1 to 14")

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct KitOptions {
   std::string folder = "configs/kits";
   std::vector<std::string> files;
 };
@@ -44,7 +44,7 @@ std::optional<std::vector<fs::path>> files_in(Context& context, const std::strin
   return files;
 }
 
-void run_list(Context& context, const Options& options) {
+void run_kit_list(Context& context, const KitOptions& options) {
   const auto files = files_in(context, options.folder);
   if (!files) return;
   base::Diagnostics mistakes;
@@ -87,13 +87,13 @@ std::string kit_text(const model::Kit& kit) {
          fmt::format("\n  sha256 {}", kit.sha256);
 }
 
-void run_show(Context& context, const Options& options) {
+void run_kit_show(Context& context, const KitOptions& options) {
   const auto kit = config::read_kit(options.files.front());
   if (!kit) return context.fail(kit.error(), "nothing to show");
   context.print(context.json ? planner::kit_json(*kit).dump(1) : kit_text(*kit));
 }
 
-void run_check(Context& context, const Options& options) {
+void run_kit_check(Context& context, const KitOptions& options) {
   base::Diagnostics mistakes;
   std::size_t good = 0;
   for (const std::string& file : options.files) {
@@ -118,23 +118,23 @@ void run_check(Context& context, const Options& options) {
 void add_kit(CLI::App& app, Context& context) {
   CLI::App* command = app.add_subcommand("kit", "pin kits");
   command->require_subcommand(1);
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<KitOptions>();
   CLI::App* list = command->add_subcommand("list", "the kits of a folder");
   list->add_option("FOLDER", options->folder, "where the kits are")
       ->type_name("")
       ->check(file_name())
       ->capture_default_str();
-  list->callback([&context, options] { run_list(context, *options); });
+  list->callback([&context, options] { run_kit_list(context, *options); });
   CLI::App* show = command->add_subcommand("show", "one kit");
   show->add_option("KIT", options->files, "kit file")
       ->type_name("")
       ->check(file_name())
       ->required()
       ->expected(1);
-  show->callback([&context, options] { run_show(context, *options); });
+  show->callback([&context, options] { run_kit_show(context, *options); });
   CLI::App* check = command->add_subcommand("check", "every mistake in kit files");
   check->add_option("KIT", options->files, "kit files")->type_name("")->check(file_name())->required();
-  check->callback([&context, options] { run_check(context, *options); });
+  check->callback([&context, options] { run_kit_check(context, *options); });
 }
 
 }  // namespace pinjaw::app

@@ -13,7 +13,7 @@ namespace pinjaw::app {
 
 namespace {
 
-struct Options {
+struct PlanOptions {
   std::string task;
   std::string output;
   std::optional<int> certify;
@@ -26,7 +26,7 @@ constexpr int kLookedInto = 10;  // where --certify or --robust has no number: a
 constexpr int kMostLookedInto = 1000000;
 
 /// The plan with how robust its best designs are, where that was asked for.
-std::optional<planner::Plan> plan_robustly(Context& context, const Options& options) {
+std::optional<planner::Plan> plan_robustly(Context& context, const PlanOptions& options) {
   auto job = read_job(context, options.task, options.planning);
   if (!job) return std::nullopt;
   const bool by_worst = options.rank == planner::Rank::Robust;
@@ -40,7 +40,7 @@ std::optional<planner::Plan> plan_robustly(Context& context, const Options& opti
   return plan;
 }
 
-void run_plan(Context& context, const Options& options) {
+void run_plan(Context& context, const PlanOptions& options) {
   if (!context.can_write(options.output, options.task)) return;
   const auto plan = plan_robustly(context, options);
   if (!plan) return;
@@ -56,7 +56,7 @@ void run_plan(Context& context, const Options& options) {
 }  // namespace
 
 void add_plan(CLI::App& app, Context& context) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<PlanOptions>();
   CLI::App* command =
       app.add_subcommand("plan", "every pin layout that holds the part, smallest squeeze first");
   command->add_option("TASK", options->task, "task file")->type_name("")->check(file_name())->required();

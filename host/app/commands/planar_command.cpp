@@ -14,14 +14,14 @@ namespace pinjaw::app {
 
 namespace {
 
-struct Options {
+struct PlanarOptions {
   std::string profile;
   std::string kit;
   std::string output;
   int threads = 0;
 };
 
-void run_planar(Context& context, const Options& options) {
+void run_planar(Context& context, const PlanarOptions& options) {
   if (!context.can_write(options.output, options.profile)) return;
   const auto profile = config::read_profile(options.profile);
   const auto kit = config::read_kit(options.kit);
@@ -43,7 +43,7 @@ void run_planar(Context& context, const Options& options) {
 }  // namespace
 
 void add_planar(CLI::App& app, Context& context) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<PlanarOptions>();
   CLI::App* command = app.add_subcommand("planar", "every planar fixture of a profile");
   command->add_option("PROFILE", options->profile, "profile file")
       ->type_name("")

@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kLongestRunS = 24 * 3600.0;
 
-struct Options {
+struct RunOptions {
   std::string sequence;
   std::string plan;
   std::string report;
@@ -68,7 +68,7 @@ std::optional<std::vector<cell::CellDesign>> planned_designs(Context& context, c
 }
 
 /// The cell's best design, or the one the sequence names.
-std::optional<cell::CellDesign> choose_design(Context& context, const Options& options,
+std::optional<cell::CellDesign> choose_design(Context& context, const RunOptions& options,
                                               const model::Sequence& sequence, const planner::Scene& scene) {
   const auto designs = options.plan.empty() ? planned_designs(context, sequence.cell, sequence.design)
                                             : saved_designs(context, options.plan, sequence.cell, scene);
@@ -86,7 +86,7 @@ std::optional<cell::CellDesign> choose_design(Context& context, const Options& o
   return *chosen;
 }
 
-std::optional<Prepared> prepare(Context& context, const Options& options) {
+std::optional<Prepared> prepare(Context& context, const RunOptions& options) {
   const std::string& file = options.sequence;
   auto sequence = config::read_sequence(file);
   if (!sequence) {
@@ -196,7 +196,7 @@ void print_script(const Context& context, const Prepared& prepared) {
   }
 }
 
-void run_sequence(Context& context, const Options& options) {
+void run_sequence(Context& context, const RunOptions& options) {
   if (!context.can_write(options.report, options.sequence)) return;
   if (!context.can_write(options.log, options.sequence)) return;
   auto prepared = prepare(context, options);
@@ -228,7 +228,7 @@ void run_sequence(Context& context, const Options& options) {
 }  // namespace
 
 void add_run(CLI::App& app, Context& context) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RunOptions>();
   CLI::App* command = app.add_subcommand("run", "play a scripted sequence on the controllers of a cell");
   command->add_option("SEQUENCE", options->sequence, "sequence file")
       ->type_name("")

@@ -15,13 +15,11 @@ namespace pinjaw::app {
 
 namespace {
 
-struct Options {
+struct SendOptions {
   std::string plan;
   std::string design = "best";
   int node = 0;
 };
-
-constexpr double kAnswerS = 2;
 
 /// The controller's kit and limit fit the plan's; they are compared before anything is written to it.
 bool fits(Context& context, Talk& talk, std::uint8_t node, const wire::Layout& layout) {
@@ -37,7 +35,7 @@ bool fits(Context& context, Talk& talk, std::uint8_t node, const wire::Layout& l
   return true;
 }
 
-void run_send(Context& context, const Options& options) {
+void run_send(Context& context, const SendOptions& options) {
   const auto plan = planner::read_plan(options.plan);
   if (!plan) return context.fail(plan.error(), "nothing was sent");
   const model::Design* design = find_design(plan->designs, options.design);
@@ -67,7 +65,7 @@ void run_send(Context& context, const Options& options) {
 }  // namespace
 
 void add_send(CLI::App& app, Context& context) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<SendOptions>();
   CLI::App* command = app.add_subcommand("send", "send a design's layout to a controller and commit it");
   command->add_option("PLAN", options->plan, "plan JSON")->type_name("")->check(file_name())->required();
   command->add_option("--design", options->design, "id of a design, or best")

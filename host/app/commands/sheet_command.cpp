@@ -17,7 +17,7 @@ namespace pinjaw::app {
 
 namespace {
 
-struct Options {
+struct SheetOptions {
   std::string plan;
   std::string station;
   std::string design = "best";
@@ -39,7 +39,7 @@ std::optional<report::PictureFormat> format_of(const std::string& file) {
   return std::nullopt;
 }
 
-std::optional<Planned> from_plan(Context& context, const Options& options) {
+std::optional<Planned> from_plan(Context& context, const SheetOptions& options) {
   const auto plan = planner::read_plan(options.plan);
   if (!plan) {
     context.fail(plan.error(), "nothing was drawn");
@@ -53,7 +53,7 @@ std::optional<Planned> from_plan(Context& context, const Options& options) {
   return Planned{planner::task_of(*plan), plan->part.sha256, plan->friction_model, *design};
 }
 
-std::optional<Planned> from_cell_plan(Context& context, const Options& options) {
+std::optional<Planned> from_cell_plan(Context& context, const SheetOptions& options) {
   const auto plan = cell::read_cell_plan(options.plan);
   if (!plan) {
     context.fail(plan.error(), "nothing was drawn");
@@ -85,7 +85,7 @@ std::optional<Planned> from_cell_plan(Context& context, const Options& options) 
   return planned;
 }
 
-void run_sheet(Context& context, const Options& options) {
+void run_sheet(Context& context, const SheetOptions& options) {
   const auto format = format_of(options.output);
   if (!format) {
     return context.fail(ExitCode::Usage,
@@ -119,7 +119,7 @@ void run_sheet(Context& context, const Options& options) {
 }  // namespace
 
 void add_sheet(CLI::App& app, Context& context) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<SheetOptions>();
   CLI::App* command =
       app.add_subcommand("sheet", "set-up sheet of a design at 1:1, for whoever puts the pins in");
   command->add_option("PLAN", options->plan, "plan JSON; with --station, cell plan JSON")

@@ -21,7 +21,7 @@ namespace {
 constexpr int kDefaultSeconds = 60;  // chosen: as long as a person waits for advice
 constexpr int kMostSeconds = 86400;
 
-struct Options {
+struct WhyOptions {
   std::string task;
   std::string design;
   int seconds = kDefaultSeconds;
@@ -122,7 +122,7 @@ void print_advice(Context& context, const Job& job, const planner::Plan& plan, i
   context.print(context.json ? why_json(plan, advice) : rest_text(advice));
 }
 
-void run_why(Context& context, Options options) {
+void run_why(Context& context, WhyOptions options) {
   options.planning.top = "all";
   const auto job = read_job(context, options.task, options.planning);
   if (!job) return;
@@ -139,7 +139,7 @@ void run_why(Context& context, Options options) {
 }  // namespace
 
 void add_why(CLI::App& app, Context& context) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<WhyOptions>();
   CLI::App* command = app.add_subcommand(
       "why", "what each phase left out, by how much, and what would help; what limits one design");
   command->add_option("TASK", options->task, "task file")->type_name("")->check(file_name())->required();

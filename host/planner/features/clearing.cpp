@@ -8,15 +8,12 @@
 namespace pinjaw::planner {
 namespace {
 
+using geometry::cross;
 using geometry::Interval;
 using geometry::Vector2d;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr Interval kEmpty{kInfinity, -kInfinity};
-
-double cross(const Vector2d& a, const Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
 
 Interval hull(const Interval& a, const Interval& b) {
   return {std::min(a.lo, b.lo), std::max(a.hi, b.hi)};

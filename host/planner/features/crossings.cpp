@@ -6,14 +6,11 @@
 namespace pinjaw::planner {
 namespace {
 
+using geometry::cross;
 using geometry::Vector2d;
 using Points = std::vector<Vector2d>;
 
 constexpr double kParallelSine = 1e-9;
-
-double cross(const Vector2d& a, const Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
 
 /// Half the chord that a line at `distance_mm` from the centre cuts; 0 where it touches within tolerance.
 std::optional<double> half_chord_mm(double radius_mm, double distance_mm) {

@@ -6,11 +6,9 @@
 namespace pinjaw::planner {
 namespace {
 
-constexpr double kMargin = 1e-9;  // relative; a boundary case is not closure, so it is not discarded
+using geometry::cross;
 
-double cross(const Vector2d& a, const Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
+constexpr double kMargin = 1e-9;  // relative; a boundary case is not closure, so it is not discarded
 
 /// Nguyen: each contact sees the other inside its friction cone, squeezing inwards or spreading outwards.
 bool two_contacts_close(const PlanarContact& a, const PlanarContact& b, double mu) {

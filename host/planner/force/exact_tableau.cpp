@@ -16,14 +16,14 @@ using Real = long double;
 using kernel::kRows;
 constexpr int kColumns = 4 * Grasp::kMaxContacts;
 constexpr int kWidth = kColumns + kRows;  // real columns, then one artificial a row
-constexpr double kFeasible = 1e-10;       // of |b|, the kernel's primal tolerance
+constexpr double kExactFeasible = 1e-10;  // of |b|, the kernel's primal tolerance
 // Columns have length about 1 and rounding of 1e-16. A column that gains less than 1e-13 a newton is not
 // worth entering; one that gains more has an entry above a sixth of that, so the pivot tolerance lies below
 // it.
 constexpr double kReducedCost = 1e-13;
-constexpr double kPivot = 1e-15;
-constexpr double kRank = 1e-12;    // a row smaller than this is dependent
-constexpr int kMaxPivots = 20000;  // Bland's rule ends far earlier; reaching this is a bug
+constexpr double kExactPivot = 1e-15;
+constexpr double kRank = 1e-12;         // a row smaller than this is dependent
+constexpr int kMaxExactPivots = 20000;  // Bland's rule ends far earlier; reaching this is a bug
 
 Real magnitude(Real value) {
   return value < 0 ? -value : value;
@@ -50,7 +50,7 @@ class Tableau {
     run(cost, columns_);
     Real artificial = 0;
     for (int k = 0; k < kRows; ++k) artificial += basis_[at(k)] >= kColumns ? right_[at(k)] : Real{0};
-    if (artificial > kFeasible * size_) return Unresistable{};
+    if (artificial > kExactFeasible * size_) return Unresistable{};
     drive_out_artificials();
     artificials_block_ = false;
     cost.fill(0);
@@ -72,7 +72,7 @@ class Tableau {
 
   /// False where the objective is unbounded below.
   bool run(const std::array<Real, kWidth>& cost, int width) {
-    for (int pivots = 0; pivots < kMaxPivots; ++pivots) {
+    for (int pivots = 0; pivots < kMaxExactPivots; ++pivots) {
       const int entering = improving_column(cost, width);
       if (entering < 0) return true;
       const int row = blocking_row(entering);
@@ -97,7 +97,7 @@ class Tableau {
     int row = -1;
     for (int k = 0; k < kRows; ++k) {
       const Real entry = rows_[at(k)][at(entering)];
-      if (entry <= kPivot || (!artificials_block_ && basis_[at(k)] >= kColumns)) continue;
+      if (entry <= kExactPivot || (!artificials_block_ && basis_[at(k)] >= kColumns)) continue;
       if (row < 0) {
         row = k;
         continue;

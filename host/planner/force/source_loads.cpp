@@ -14,7 +14,7 @@ namespace {
 
 using geometry::Vector3d;
 using model::Wrench;
-using Loads = base::Expected<std::vector<SourceLoad>>;
+using SourceLoads = base::Expected<std::vector<SourceLoad>>;
 
 constexpr double kStandardGravity = 9.80665;  // m/s2, by definition, CGPM 1901
 
@@ -73,7 +73,7 @@ std::vector<Worded> torques_of(const model::Drilling& drilling) {
 struct LoadsOf {
   const Body& body;
 
-  Loads operator()(const model::Gravity& gravity) const {
+  SourceLoads operator()(const model::Gravity& gravity) const {
     if (body.mass_kg <= 0) return base::failure("gravity needs the part's mass: give a material or mass_kg");
     std::vector<SourceLoad> loads;
     for (const model::Heading& pose : gravity.poses) {
@@ -84,7 +84,7 @@ struct LoadsOf {
     return loads;
   }
 
-  Loads operator()(const model::Acceleration& acceleration) const {
+  SourceLoads operator()(const model::Acceleration& acceleration) const {
     if (body.mass_kg <= 0) {
       return base::failure("an acceleration needs the part's mass: give a material or mass_kg");
     }
@@ -100,7 +100,7 @@ struct LoadsOf {
     return loads;
   }
 
-  Loads operator()(const model::Spray& spray) const {
+  SourceLoads operator()(const model::Spray& spray) const {
     if (body.surface == nullptr) return base::failure("a spray needs the part's surface");
     const auto hits = spray_hits(spray, *body.surface);
     if (!hits) return tl::unexpected(hits.error());
@@ -110,18 +110,18 @@ struct LoadsOf {
     return loads;
   }
 
-  Loads operator()(const model::PointForce& force) const {
+  SourceLoads operator()(const model::PointForce& force) const {
     return std::vector<SourceLoad>{{"", force_at(force.at_mm, force.force_n)}};
   }
 
-  Loads operator()(const model::PlainWrench& plain) const {
+  SourceLoads operator()(const model::PlainWrench& plain) const {
     Wrench wrench;
     wrench << plain.force_n, plain.torque_nmm;
     return std::vector<SourceLoad>{{"", wrench}};
   }
 
   /// Corners of (thrust to pull) x (torques); the one without a load is left out.
-  Loads operator()(const model::Drilling& drilling) const {
+  SourceLoads operator()(const model::Drilling& drilling) const {
     std::vector<SourceLoad> loads;
     const std::array<Worded, 2> feeds = {Worded{drilling.thrust_n, "thrust"},
                                          Worded{-drilling.pull_n, drilling.pull_n > 0 ? "pull" : ""}};
@@ -136,7 +136,7 @@ struct LoadsOf {
     return loads;
   }
 
-  Loads operator()(const model::Insertion& insertion) const {
+  SourceLoads operator()(const model::Insertion& insertion) const {
     const Vector3d along = insertion.along.normalized();
     const Vector3d push_n = insertion.force_n * along;
     if (insertion.side_n == 0) {
@@ -151,7 +151,7 @@ struct LoadsOf {
   }
 
   /// At both ends of each run, since between them the wrench is a mean of theirs.
-  Loads operator()(const model::Path& path) const {
+  SourceLoads operator()(const model::Path& path) const {
     std::vector<SourceLoad> loads;
     if (path.drag_n == 0) {
       for (const Vector3d& p_mm : path.points_mm)
@@ -171,7 +171,7 @@ struct LoadsOf {
     return loads;
   }
 
-  Loads operator()(const model::Milling& milling) const {
+  SourceLoads operator()(const model::Milling& milling) const {
     std::vector<SourceLoad> loads;
     const Vector3d axis = milling.axis.normalized();
     for (std::size_t i = 0; i < milling.points_mm.size(); ++i) {

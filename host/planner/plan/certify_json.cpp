@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "host/planner/plan/json_values.hpp"
 
@@ -12,7 +11,6 @@ namespace {
 using base::JsonField;
 using nlohmann::ordered_json;
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double number_or_infinity(const JsonField& field, std::string_view key) {
@@ -61,7 +59,8 @@ std::vector<model::Disturbance> read_disturbances(const JsonField& field) {
   for (const JsonField& entry : field.list()) {
     model::Disturbance disturbance;
     disturbance.name = entry.text("name");
-    const std::vector<double> wrench = entry.at("wrench").numbers(6, {"a number from -1e12 to 1e12", -1e12, 1e12});
+    const std::vector<double> wrench =
+        entry.at("wrench").numbers(6, {"a number from -1e12 to 1e12", -1e12, 1e12});
     for (int i = 0; i < 6; ++i) disturbance.wrench[i] = wrench[static_cast<std::size_t>(i)];
     disturbances.push_back(std::move(disturbance));
   }

@@ -14,6 +14,7 @@
 #include "host/planner/loading/loading.hpp"
 #include "host/planner/plan/check_certified.hpp"
 #include "host/planner/plan/check_robust.hpp"
+#include "host/planner/plan/check_tolerances.hpp"
 
 namespace pinjaw::planner {
 
@@ -24,8 +25,6 @@ using geometry::Vector3d;
 
 constexpr double kLengthTolMm = 1e-6;  // chosen: plans state lengths to the last bit; poses lose some 1e-13
 constexpr double kHeightTolMm = 1e-4;  // chosen: a foot moved by kLengthTolMm on a steep facet
-constexpr double kForceTolN = 1e-6;    // chosen: the solver certifies 1e-9 relative
-constexpr double kUnitTol = 1e-9;
 
 /// Collects claims about one design.
 class Report {

@@ -6,12 +6,10 @@
 #include <cmath>
 
 #include "host/planner/plan/certify.hpp"
+#include "host/planner/plan/check_tolerances.hpp"
 
 namespace pinjaw::planner {
 namespace {
-
-constexpr double kForceTolN = 1e-6;  // chosen: as of the other forces of a design
-constexpr double kUnitTol = 1e-9;
 
 Claim claim(const model::Design& design, std::string what, bool holds, std::string found) {
   return {design.id, std::move(what), holds, holds ? std::string() : std::move(found)};

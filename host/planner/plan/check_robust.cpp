@@ -5,13 +5,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "host/planner/plan/check_tolerances.hpp"
 #include "host/planner/plan/rank.hpp"
 
 namespace pinjaw::planner {
 
 namespace {
 
-constexpr double kForceTolN = 1e-6;
 constexpr double kPlaceTol = 1e-9;  // mm and degrees
 
 }  // namespace

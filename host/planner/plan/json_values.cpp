@@ -1,7 +1,6 @@
 #include "host/planner/plan/json_values.hpp"
 
 #include <limits>
-#include <numbers>
 
 #include "host/config/fields.hpp"
 #include "host/planner/plan/certify_json.hpp"
@@ -13,8 +12,6 @@ namespace {
 
 using base::JsonField;
 using nlohmann::ordered_json;
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 ordered_json pair_json(double first, double second) {
   return ordered_json::array({first, second});

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "host/base/json_fields.hpp"
 #include "host/model/design.hpp"
@@ -11,6 +12,8 @@
 
 /// Model values as JSON, and back: what plans and cell plans share. Units stand in every key.
 namespace pinjaw::planner {
+
+inline constexpr double kDegree = std::numbers::pi / 180;  ///< angles are told in degrees
 
 nlohmann::ordered_json vector_json(const model::Vector3d& v);
 nlohmann::ordered_json pose_json(const geometry::Pose2& pose);

@@ -1,7 +1,6 @@
 #include "host/planner/plan/planar_json.hpp"
 
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "host/planner/plan/json_values.hpp"
 #include "host/planner/planar/column_shifts.hpp"
@@ -11,8 +10,6 @@ namespace pinjaw::planner {
 namespace {
 
 using nlohmann::ordered_json;
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 ordered_json fixture_json(const PlanarFixture& fixture, const std::vector<model::Feature>& features,
                           const model::Kit& kit) {

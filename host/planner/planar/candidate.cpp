@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "host/planner/planar/constants.hpp"
+
 namespace pinjaw::planner::planar {
 namespace {
 
@@ -11,7 +13,6 @@ constexpr double kLeastPush = 1e-6;        // |n_x| under this is rounding of 0,
 constexpr double kLeastMultiplier = 1e-9;  // chosen: above rounding, far below any real margin
 constexpr double kRoughMultiplier =
     -0.02;  // chosen: seeds are near enough to tell this much before polishing
-constexpr double kOverlap_mm = 1e-9;
 constexpr double kSeparationTolerance_mm = 1e-9;
 constexpr double kMarginTolerance_mm = 1e-9;
 constexpr double kRoughSpan_mm = 1.0;  // chosen: seeds of a span are good to far less

@@ -5,10 +5,11 @@
 #include <numbers>
 #include <tuple>
 
+#include "host/planner/planar/constants.hpp"
+
 namespace pinjaw::planner::planar {
 namespace {
 
-constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kSameAngle_rad = 1e-7;  // chosen: polished roots agree to 1e-10
 constexpr double kSamePlace_mm = 1e-6;
 constexpr double kWholeTurn_rad = 1e-9;  // rounding below 0 is told as 0, not as a whole turn

@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "host/planner/planar/constants.hpp"
 #include "host/planner/planar/outline.hpp"
 
 namespace pinjaw::planner::planar {
 namespace {
 
-constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kLeastLength_mm = 1e-9;  // chosen: no pin can be told to stand on less
 constexpr double kFullTurn_rad = kTurn - 1e-9;
 

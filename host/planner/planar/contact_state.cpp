@@ -7,6 +7,8 @@
 namespace pinjaw::planner::planar {
 namespace {
 
+using geometry::cross;
+
 constexpr double kSolved_mm = 1e-10;  // chosen: a thousandth of the foot tolerance
 constexpr double kLeastMinors_mm =
     1e-6;                   // chosen: above rounding; where all contact lines meet the part can turn
@@ -16,10 +18,6 @@ constexpr double kLargestTurn_rad = 0.05;  // chosen: further away is another ro
 Vector2d turned(double c, double s, const Vector2d& v) {
   return {c * v.x() - s * v.y(), s * v.x() + c * v.y()};
 }
-double cross(const Vector2d& u, const Vector2d& v) {
-  return u.x() * v.y() - u.y() * v.x();
-}
-
 template <int Count>
 bool polished(std::span<const Touch> touches, Placement& placement) {
   const double start_rad = placement.theta_rad;

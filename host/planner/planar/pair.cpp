@@ -2,25 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "host/planner/planar/constants.hpp"
 
 namespace pinjaw::planner::planar {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kTurn = 2 * kPi;
+using geometry::across;
+using geometry::cross;
+
 constexpr double kParallelSine = 1e-6;   // chosen: nearer lines are searched as parallel, then polished
 constexpr double kCoincident_mm = 1e-6;  // chosen: nearer circles are searched as coinciding, then polished
 constexpr double kFoldNoise_mm2 = 1e-9;  // chosen: rounding of a square of some 100 mm, with room
 constexpr double kSamePoint_rad = 1e-13;
 constexpr double kLeastStretch_rad = 1e-12;
 
-double cross(const Vector2d& u, const Vector2d& v) {
-  return u.x() * v.y() - u.y() * v.x();
-}
-Vector2d left_of(const Vector2d& v) {
-  return {-v.y(), v.x()};
-}
 double angle_of(const Vector2d& v) {
   return std::atan2(v.y(), v.x());
 }
@@ -41,7 +37,7 @@ std::optional<Vector2d> on_circle_and_line(double radius_mm, const Vector2d& nor
   const double square = radius_mm * radius_mm - level_mm * level_mm;
   if (square < -kFoldNoise_mm2) return std::nullopt;
   const double along_mm = square > 0 ? std::sqrt(square) : 0.0;
-  return Vector2d(level_mm * normal + (branch == 0 ? along_mm : -along_mm) * left_of(normal));
+  return Vector2d(level_mm * normal + (branch == 0 ? along_mm : -along_mm) * across(normal));
 }
 
 std::optional<Vector2d> on_two_circles(double radius_mm, const Vector2d& other_center_mm,
@@ -214,8 +210,8 @@ std::optional<PairState> state_at(const Pair& pair, double theta_rad, int branch
   state.o_mm = *o_mm;
   state.normal_a = jaw_normal(*pair.a, turn, *o_mm, Vector2d::Zero());
   state.normal_b = jaw_normal(*pair.b, turn, *o_mm, pair.apart_mm);
-  const double turning_a = -state.normal_a.dot(left_of(-*o_mm));
-  const double turning_b = -state.normal_b.dot(left_of(pair.apart_mm - *o_mm));
+  const double turning_a = -state.normal_a.dot(across(-*o_mm));
+  const double turning_b = -state.normal_b.dot(across(pair.apart_mm - *o_mm));
   state.y_slope = (state.normal_a.x() * turning_b - state.normal_b.x() * turning_a) /
                   cross(state.normal_a, state.normal_b);
   return state;

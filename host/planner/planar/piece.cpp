@@ -6,12 +6,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "host/planner/planar/constants.hpp"
+
 namespace pinjaw::planner::planar {
 namespace {
 
 constexpr double kLongest_rad = 0.1;    // chosen: a cubic follows y over this much for parts of some 100 mm
 constexpr double kShortest_rad = 1e-7;  // chosen: shorter pieces of a fold are taken as upright
-constexpr double kOverlap_mm = 1e-9;
 
 struct Offset {
   HolePair holes;

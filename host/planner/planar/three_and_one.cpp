@@ -4,9 +4,9 @@
 #include <atomic>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <tuple>
 
+#include "host/planner/planar/constants.hpp"
 #include "host/planner/planar/crossing.hpp"
 #include "host/planner/planar/sweep.hpp"
 #include "host/planner/planar/theta_bins.hpp"
@@ -14,9 +14,7 @@
 namespace pinjaw::planner::planar {
 namespace {
 
-constexpr double kTurn = 2 * std::numbers::pi;
-constexpr std::size_t kBins = 1024;
-constexpr double kOverlap_mm = 1e-9;
+constexpr std::size_t kTripleBins = 1024;
 
 class TripleSearch {
  public:
@@ -124,11 +122,11 @@ ByFirst by_first(const ThetaBins::Bin& bin) {
 std::vector<Candidate> three_and_one(const std::vector<Piece>& pieces,
                                      const std::vector<ContactCurve>& curves, const Judge& judge,
                                      const model::Kit& kit, const Watch& watch) {
-  ThetaBins bins(kTurn, kBins);
+  ThetaBins bins(kTurn, kTripleBins);
   for (const Piece& piece : pieces) bins.add(piece);
-  std::vector<std::vector<Candidate>> found(kBins);
+  std::vector<std::vector<Candidate>> found(kTripleBins);
   std::atomic<std::size_t> done = 0;
-  tbb::parallel_for(std::size_t{0}, kBins, [&](std::size_t i) {
+  tbb::parallel_for(std::size_t{0}, kTripleBins, [&](std::size_t i) {
     if (watch.stop.stop_requested()) return;
     TripleSearch search(curves, judge, kit);
     for (const auto& [a, group] : by_first(bins[i])) {
@@ -139,7 +137,7 @@ std::vector<Candidate> three_and_one(const std::vector<Piece>& pieces,
     }
     found[i] = search.take();
     const std::size_t now = ++done;
-    if (watch.progress) watch.progress(static_cast<double>(now) / static_cast<double>(kBins));
+    if (watch.progress) watch.progress(static_cast<double>(now) / static_cast<double>(kTripleBins));
   });
   std::vector<Candidate> all;
   for (const auto& some : found) all.insert(all.end(), some.begin(), some.end());

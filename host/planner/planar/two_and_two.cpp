@@ -2,8 +2,8 @@
 
 #include <atomic>
 #include <cmath>
-#include <numbers>
 
+#include "host/planner/planar/constants.hpp"
 #include "host/planner/planar/crossing.hpp"
 #include "host/planner/planar/sweep.hpp"
 #include "host/planner/planar/theta_bins.hpp"
@@ -11,8 +11,7 @@
 namespace pinjaw::planner::planar {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr std::size_t kBins = 512;           // chosen: slices of some 0.006 rad
+constexpr std::size_t kPairBins = 512;       // chosen: slices of some 0.006 rad
 constexpr double kLeastOverlap_rad = 1e-10;  // a gap between normals of exactly pi never closes
 
 /// A left pair seen from the right jaw, the gripper turned by 180 degrees: y of pin A is mirrored.
@@ -79,8 +78,8 @@ class SliceSearch {
 
 std::vector<Candidate> two_and_two(const std::vector<Piece>& pieces, const Judge& judge,
                                    const model::Kit& kit, const Watch& watch) {
-  ThetaBins lefts(kPi, kBins);
-  ThetaBins rights(kPi, kBins);
+  ThetaBins lefts(kPi, kPairBins);
+  ThetaBins rights(kPi, kPairBins);
   std::vector<Piece> turned_pieces;
   turned_pieces.reserve(pieces.size());
   for (const Piece& piece : pieces) {
@@ -91,9 +90,9 @@ std::vector<Candidate> two_and_two(const std::vector<Piece>& pieces, const Judge
     }
   }
   for (const Piece& piece : turned_pieces) rights.add(piece);
-  std::vector<std::vector<Candidate>> found(kBins);
+  std::vector<std::vector<Candidate>> found(kPairBins);
   std::atomic<std::size_t> done = 0;
-  tbb::parallel_for(std::size_t{0}, kBins, [&](std::size_t i) {
+  tbb::parallel_for(std::size_t{0}, kPairBins, [&](std::size_t i) {
     if (watch.stop.stop_requested()) return;
     SliceSearch search(judge, kit);
     search.meet(lefts[i].starting, rights[i].starting);
@@ -101,7 +100,7 @@ std::vector<Candidate> two_and_two(const std::vector<Piece>& pieces, const Judge
     search.meet(lefts[i].going, rights[i].starting);
     found[i] = search.take();
     const std::size_t now = ++done;
-    if (watch.progress) watch.progress(static_cast<double>(now) / static_cast<double>(kBins));
+    if (watch.progress) watch.progress(static_cast<double>(now) / static_cast<double>(kPairBins));
   });
   std::vector<Candidate> all;
   for (const auto& some : found) all.insert(all.end(), some.begin(), some.end());

@@ -15,11 +15,11 @@ constexpr std::array kSpacings_mm{5.0,  6.0,  6.35,   8.0,  9.525, 10.0, 11.1125
                                   12.7, 15.0, 15.875, 16.0, 19.05, 20.0, 25.0,    25.4};
 constexpr std::array kRadii_mm{0.5,     0.75, 0.79375, 1.0,   1.190625, 1.25,   1.5, 1.5875, 2.0,
                                2.38125, 2.5,  3.0,     3.175, 4.0,      4.7625, 5.0, 6.0,    6.35};
-constexpr int kMostHoles = 64;          // what a kit file may say
-constexpr double kMostFriction = 1;     // chosen: more is no dry pin
-constexpr double kFrictionStep = 0.05;  // chosen: as tables give it
-constexpr double kMostGap_mm = 20;      // chosen: pins bend
-constexpr double kWholeForce_n = 5;     // chosen: what a cylinder is bought by
+constexpr int kMostHoles = 64;               // what a kit file may say
+constexpr double kMostTriedFriction = 1;     // chosen: more is no dry pin
+constexpr double kTriedFrictionStep = 0.05;  // chosen: as tables give it
+constexpr double kMostGap_mm = 20;           // chosen: pins bend
+constexpr double kWholeForce_n = 5;          // chosen: what a cylinder is bought by
 
 /// The phases of the funnel, in order; None: some design is left.
 enum class Phase { Features, Planar, Heights, Loading, Force, None };
@@ -241,12 +241,12 @@ void add_friction(Workshop& shop, const model::Task& task) {
     (pin.friction > task.friction ? more : less).push_back(change_to(pin.friction, to));
   }
   if (pins.empty()) {
-    if (task.friction < kMostFriction) {
-      for (const double mu : steps(task.friction, kMostFriction, kFrictionStep))
+    if (task.friction < kMostTriedFriction) {
+      for (const double mu : steps(task.friction, kMostTriedFriction, kTriedFrictionStep))
         more.push_back(change_to(mu, number(mu)));
     }
-    if (task.friction > kFrictionStep) {
-      for (const double mu : steps(task.friction, kFrictionStep, kFrictionStep))
+    if (task.friction > kTriedFrictionStep) {
+      for (const double mu : steps(task.friction, kTriedFrictionStep, kTriedFrictionStep))
         less.push_back(change_to(mu, number(mu)));
     }
   }

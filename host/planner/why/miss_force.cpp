@@ -8,8 +8,8 @@
 namespace pinjaw::planner {
 namespace {
 
-constexpr double kFrictionStep = 1e-3;  // chosen: no friction is known better
-constexpr double kMostFriction = 2;     // what a task file may say
+constexpr double kFrictionResolution = 1e-3;  // chosen: no friction is known better
+constexpr double kMostTaskFriction = 2;       // what a task file may say
 
 struct Judged {
   const std::vector<model::Design>& designs;
@@ -27,7 +27,7 @@ bool slides(Grasp& grasp, double mu) {
 double sliding_friction(Grasp grasp, double most) {
   if (slides(grasp, most)) return most;
   if (!slides(grasp, 0)) return 0;
-  return boundary({most, 0}, kFrictionStep, [&](double mu) { return slides(grasp, mu); });
+  return boundary({most, 0}, kFrictionResolution, [&](double mu) { return slides(grasp, mu); });
 }
 
 NearMiss sliding_miss(const char* reason, const std::vector<std::size_t>& lost, const Judged& judged) {
@@ -52,7 +52,7 @@ NearMiss holding_miss(const std::vector<std::size_t>& lost, const Judged& judged
                 .quantity = "friction",
                 .unit = Unit::Ratio};
   force.usable_n = std::numeric_limits<double>::infinity();
-  double least = kMostFriction;
+  double least = kMostTaskFriction;
   for (const std::size_t i : lost) {
     if (stop.stop_requested()) break;
     Grasp grasp = judged.grasps[i];
@@ -60,9 +60,9 @@ NearMiss holding_miss(const std::vector<std::size_t>& lost, const Judged& judged
       grasp.mu = mu;
       return std::holds_alternative<Holds>(evaluate(grasp, wrenches, force));
     };
-    const double most = sliding_friction(grasp, least) - (miss.gap ? kFrictionStep : 0);
+    const double most = sliding_friction(grasp, least) - (miss.gap ? kFrictionResolution : 0);
     if (most <= judged.grasps[i].mu || !holds(most)) continue;
-    least = boundary({judged.grasps[i].mu, most}, kFrictionStep, holds);
+    least = boundary({judged.grasps[i].mu, most}, kFrictionResolution, holds);
     miss.gap = NearMiss::Gap{judged.grasps[i].mu, least};
     miss.where = judged.name(i);
   }

@@ -51,4 +51,7 @@ class Bench {
 /// A file of the checkout.
 std::string shipped(const std::string& path);
 
+inline const std::string kTask = shipped("configs/tasks/l-plate.yaml");
+inline const std::string kSlowTask = shipped("configs/tasks/valve-pedestal.yaml");
+
 }  // namespace pinjaw::app_test

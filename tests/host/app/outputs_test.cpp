@@ -15,9 +15,6 @@ using nlohmann::json;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-const std::string kTask = shipped("configs/tasks/l-plate.yaml");
-const std::string kSlowTask = shipped("configs/tasks/valve-pedestal.yaml");
-
 TEST(Output, of_plan_without_a_file_is_json_alone_on_stdout_and_the_summary_a_remark) {
   const Ran ran = Bench().pinjaw("plan " + kTask);
   EXPECT_EQ(ran.exit_code, 0);

@@ -12,8 +12,6 @@ using nlohmann::json;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-const std::string kTask = shipped("configs/tasks/l-plate.yaml");
-
 TEST(Features, are_written_as_json_and_as_a_picture) {
   const Bench bench;
   EXPECT_EQ(json::parse(bench.pinjaw("features " + kTask).out).at("format"), "pinjaw-features/1");

@@ -12,8 +12,6 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-const std::string kTask = shipped("configs/tasks/l-plate.yaml");
-
 json plan_of(const std::string& options) {
   const Ran ran = Bench().pinjaw("plan " + kTask + " " + options);
   EXPECT_EQ(ran.exit_code, 0) << ran.err;

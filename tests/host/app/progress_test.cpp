@@ -114,9 +114,6 @@ TEST(JsonDisplay, is_one_object_a_line_with_the_first_and_the_last_of_each_phase
   EXPECT_THAT(display.show({"heights", 0, 3}, 7.03), HasSubstr("\"elapsed_s\":0.0"));
 }
 
-const std::string kTask = shipped("configs/tasks/l-plate.yaml");
-const std::string kSlowTask = shipped("configs/tasks/valve-pedestal.yaml");
-
 /// What a screen shows of what it was sent, line by line.
 std::vector<std::string> shown_by(const std::string& sent) {
   std::vector<std::string> lines(1);

@@ -6,6 +6,7 @@
 #include "protocol/bus/sim_bus.hpp"
 #include "protocol/wire/names.hpp"
 #include "tests/host/jaw_client/fake_controller.hpp"
+#include "tests/host/jaw_client/nodes.hpp"
 
 namespace pinjaw::jaw_client {
 namespace {
@@ -20,8 +21,6 @@ using wire::Op;
 using wire::Reason;
 using wire::State;
 
-constexpr std::uint8_t kArm = 1;
-constexpr std::uint8_t kPedestal = 2;
 constexpr std::uint32_t kCrc = 0x89ABCDEF;
 
 wire::Layout layout_of(std::uint16_t f_limit_dn = 1400) {

@@ -4,16 +4,13 @@
 #include "protocol/wire/commands.hpp"
 #include "protocol/wire/names.hpp"
 #include "tests/firmware_sim/support/test_cell.hpp"
+#include "tests/host/jaw_client/nodes.hpp"
 
 /// The client against real controllers: firmware, pneumatics and world, on a simulated bus.
 namespace pinjaw::jaw_client {
 namespace {
 
 using wire::State;
-
-constexpr std::uint8_t kArm = 1;
-constexpr std::uint8_t kPedestal = 2;
-constexpr std::uint8_t kPallet = 3;
 
 class WithControllers : public ::testing::Test {
  protected:

@@ -26,7 +26,7 @@ model::Profile rounded_plate() {
   return profile;
 }
 
-model::PartSource source_of(const model::Profile& profile) {
+model::PartSource source_with(const model::Profile& profile) {
   model::PartSource source;
   source.file = std::filesystem::path(testing::TempDir()) / (profile.name + ".yaml");
   std::ofstream(source.file) << "profile: " << profile.name << "\n";
@@ -36,7 +36,7 @@ model::PartSource source_of(const model::Profile& profile) {
 }
 
 TEST(ProfilePart, has_the_volume_of_its_loops_times_its_thickness) {
-  const auto part = read_part(source_of(rounded_plate()));
+  const auto part = read_part(source_with(rounded_plate()));
   ASSERT_TRUE(part) << part.error().message;
   const double area_mm2 = 30 * 20 + 50 * kPi - 16 * kPi;
   EXPECT_NEAR(part->volume_mm3, 5 * area_mm2, 1e-9 * area_mm2);
@@ -52,7 +52,7 @@ TEST(ProfilePart, has_the_volume_of_its_loops_times_its_thickness) {
 TEST(ProfilePart, may_have_a_hole_of_one_full_arc) {
   model::Profile profile = rounded_plate();
   profile.loops[1] = {{.curve = geometry::Arc{{12, 10}, 4, 0.5, 2 * kPi}, .reversed = true}};
-  const auto part = read_part(source_of(profile));
+  const auto part = read_part(source_with(profile));
   ASSERT_TRUE(part) << part.error().message;
   EXPECT_NEAR(part->volume_mm3, 5 * (600 + 34 * kPi), 1e-6);
 }
@@ -60,7 +60,7 @@ TEST(ProfilePart, may_have_a_hole_of_one_full_arc) {
 TEST(ProfilePart, joins_ends_that_differ_by_the_rounding_of_a_file) {
   model::Profile profile = rounded_plate();
   std::get<geometry::Segment>(profile.loops[0][0].curve).b_mm.x() += 3e-5;
-  EXPECT_TRUE(read_part(source_of(profile)));
+  EXPECT_TRUE(read_part(source_with(profile)));
 }
 
 TEST(ProfilePart, says_when_its_loops_cross) {
@@ -70,7 +70,7 @@ TEST(ProfilePart, says_when_its_loops_cross) {
                       {.curve = geometry::Segment{{10, 0}, {0, 10}}},
                       {.curve = geometry::Segment{{0, 10}, {0, 0}}}};
   profile.loops.resize(1);
-  const auto part = read_part(source_of(profile));
+  const auto part = read_part(source_with(profile));
   ASSERT_FALSE(part);
   EXPECT_THAT(part.error().message, testing::HasSubstr("profile plate: "));
 }
@@ -78,7 +78,7 @@ TEST(ProfilePart, says_when_its_loops_cross) {
 TEST(ProfilePart, says_when_it_has_no_loop) {
   model::Profile profile = rounded_plate();
   profile.loops.clear();
-  const auto part = read_part(source_of(profile));
+  const auto part = read_part(source_with(profile));
   ASSERT_FALSE(part);
   EXPECT_THAT(part.error().message, testing::HasSubstr("profile plate: no outer loop"));
 }
@@ -96,7 +96,7 @@ void expect_material_on_the_left(const Part& part) {
 
 TEST(ProfilePart, keeps_loop_and_edge_numbers_and_its_material_on_the_left_however_it_lies) {
   for (const Vector3d& up : {Vector3d(0, 0, 1), Vector3d(0, 0, -1)}) {
-    model::PartSource source = source_of(rounded_plate());
+    model::PartSource source = source_with(rounded_plate());
     source.up = up;
     const auto part = read_part(source);
     ASSERT_TRUE(part) << part.error().message;
@@ -113,7 +113,7 @@ TEST(ProfilePart, keeps_loop_and_edge_numbers_and_its_material_on_the_left_howev
 }
 
 TEST(ProfilePart, is_a_plain_solid_once_it_stands_on_its_side) {
-  model::PartSource source = source_of(rounded_plate());
+  model::PartSource source = source_with(rounded_plate());
   source.up = {0, 1, 0};
   const auto part = read_part(source);
   ASSERT_TRUE(part) << part.error().message;
@@ -123,7 +123,7 @@ TEST(ProfilePart, is_a_plain_solid_once_it_stands_on_its_side) {
 }
 
 TEST(ProfilePart, must_have_been_read_before) {
-  model::PartSource source = source_of(rounded_plate());
+  model::PartSource source = source_with(rounded_plate());
   source.profile.reset();
   const auto part = read_part(source);
   ASSERT_FALSE(part);

@@ -12,7 +12,6 @@
 namespace pinjaw::scenario {
 namespace {
 
-const std::string kOut = OUT_DIR;
 const std::vector<std::string> kThree = {"arm", "pedestal", "pallet"};
 
 std::vector<std::string> run_command(const Controllers& controllers, const std::string& report) {

@@ -11,8 +11,6 @@ namespace {
 
 using ::testing::HasSubstr;
 
-const std::string kOut = OUT_DIR;
-
 std::string status() {
   const std::string file = kOut + "/status.txt";
   EXPECT_EQ(pinjaw({"jaw", "status", "--node", "2"}, file), 0);

@@ -13,6 +13,8 @@
 /// pinjaw, pinjaw-jaw and candump as processes on vcan0. Times are patience only, never asserted.
 namespace pinjaw::scenario {
 
+inline const std::string kOut = OUT_DIR;  ///< where the plans are that the tests start from
+
 /// A program of its own, killed where it outlives this.
 class Process {
  public:

@@ -19,21 +19,14 @@
 #include <stdexcept>
 
 #include "host/part/placing.hpp"
+#include "tests/host/planner/features/occt_values.hpp"
 #include "tests/support/places.hpp"
 
 namespace pinjaw::planner {
 namespace {
 
-gp_Pnt point(const Vector3d& p) {
-  return {p.x(), p.y(), p.z()};
-}
-
 TopoDS_Shape box_shape(const Box3& box) {
   return BRepPrimAPI_MakeBox(point(box.lo_mm), point(box.hi_mm)).Shape();
-}
-
-part::Shape held(const TopoDS_Shape& shape) {
-  return std::make_shared<const TopoDS_Shape>(shape);
 }
 
 template <class Maker>

@@ -31,19 +31,13 @@
 #include <gp_Lin2d.hxx>
 #include <numbers>
 
+#include "tests/host/planner/features/occt_values.hpp"
+
 namespace pinjaw::planner {
 namespace {
 
-gp_Pnt point(const Vector3d& p) {
-  return {p.x(), p.y(), p.z()};
-}
-
 gp_Dir direction(const Vector3d& v) {
   return {v.x(), v.y(), v.z()};
-}
-
-part::Shape held(const TopoDS_Shape& shape) {
-  return std::make_shared<const TopoDS_Shape>(shape);
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 namespace pinjaw::planner {
 namespace {
 
-model::PinStock stock() {
+model::PinStock shipped_stock() {
   model::PinStock pins;
   pins.radius_mm = 2.38125;
   pins.min_engagement_mm = 1;
@@ -18,7 +18,7 @@ model::PinStock stock() {
 
 TEST(ValveHousing, has_its_features_from_below_counted) {
   const part::Part part = part_of(shipped_shape("valve_housing"));
-  const Features found = find_features(part, stock());
+  const Features found = find_features(part, shipped_stock());
   EXPECT_EQ(found.counts.edges.total, 408);
   EXPECT_EQ(found.counts.edges[Fate::Seam], 31);
   EXPECT_EQ(found.counts.edges[Fate::Upright], 87);
@@ -29,7 +29,7 @@ TEST(ValveHousing, has_its_features_from_below_counted) {
 
 TEST(ValveHousing, has_other_features_from_above) {
   const part::Part part = part::turned(part_of(shipped_shape("valve_housing")), model::Side::Above);
-  const Features found = find_features(part, stock());
+  const Features found = find_features(part, shipped_stock());
   EXPECT_EQ(found.counts.features, 74);
   EXPECT_EQ(found.counts.reachable, 49);
 }
@@ -47,7 +47,7 @@ void expect_each_once(const std::vector<model::Feature>& features) {
 
 TEST(ShippedParts, have_each_feature_once_with_reach_inside_it) {
   for (const char* name : {"valve_housing", "cassette_chassis", "glue_gun_housing", "gear", "thin_tray"}) {
-    const Features found = find_features(part_of(shipped_shape(name)), stock());
+    const Features found = find_features(part_of(shipped_shape(name)), shipped_stock());
     expect_each_once(found.features);
     int id = 0;
     for (const model::Feature& feature : found.features) {
@@ -67,7 +67,7 @@ TEST(ShippedParts, have_each_feature_once_with_reach_inside_it) {
 TEST(GlueGun, has_the_smooth_edge_above_its_fillet_as_outline) {
   const part::Part part = part_of(shipped_shape("glue_gun_housing"));
   bool outline_found = false;
-  for (const model::Feature& feature : find_features(part, stock()).features) {
+  for (const model::Feature& feature : find_features(part, shipped_stock()).features) {
     const double middle_mm = geometry::length_mm(feature.curve) / 2;
     const geometry::Vector2d point_mm = geometry::point_at(feature.curve, middle_mm);
     const geometry::Vector2d normal = model::outward_normal_at(feature, middle_mm);
@@ -84,7 +84,7 @@ TEST(Outlines, show_more_from_both_sides_than_pins_can_touch) {
   const Outlines seen = outlines(part);
   double below_mm = 0;
   for (const auto& curve : seen.from_below) below_mm += geometry::length_mm(curve);
-  EXPECT_GE(below_mm, total_length_mm(find_features(part, stock()).features));
+  EXPECT_GE(below_mm, total_length_mm(find_features(part, shipped_stock()).features));
   EXPECT_GT(seen.from_above.size(), 50U);
   for (const auto& curves : {seen.from_below, seen.from_above}) {
     for (const auto& curve : curves) {

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "tests/host/planner/planar/shapes.hpp"
+#include "tests/host/planner/planar/slow/turn.hpp"
 
 namespace pinjaw::planner::slow {
 namespace {
@@ -16,8 +16,6 @@ using geometry::Vector2d;
 using model::Kit;
 using model::Profile;
 using model::ProfileEdge;
-
-constexpr double kTurn = 2 * std::numbers::pi;
 
 int whole(Random& random, int least, int most) {
   return std::min(most, least + static_cast<int>(random.uniform() * (most - least + 1)));

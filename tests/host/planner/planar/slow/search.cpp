@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <tuple>
 
 #include "tests/host/planner/planar/slow/ladder.hpp"
+#include "tests/host/planner/planar/slow/turn.hpp"
 
 namespace pinjaw::planner::slow {
 namespace {
@@ -13,7 +13,6 @@ namespace {
 using geometry::Interval;
 using model::JawSide;
 
-constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kNear_mm = 0.06;    // chosen: above the chords' error
 constexpr double kNear_rad = 2e-3;   // chosen: above the same error of theta
 constexpr double kStill_rad = 1e-4;  // slides that turn less are searched over y
