@@ -5,6 +5,13 @@ if(PINJAW_CCACHE)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${PINJAW_CCACHE})
 endif()
 
+# The sources of a target are compiled eight at a time, as one: most of a source's time goes into the same headers.
+# Measured: a clean build takes a third of the CPU time, and one edited source comes back in under half a minute.
+# So private names are unique in a target, not in a source. OFF compiles each source alone, as clang-tidy wants them.
+# CMake leaves out by itself what has compile options of its own.
+option(CMAKE_UNITY_BUILD "compile the sources of a target together" ON)
+set(CMAKE_UNITY_BUILD_BATCH_SIZE 8)
+
 add_library(pinjaw_flags INTERFACE)
 target_include_directories(pinjaw_flags INTERFACE ${PROJECT_SOURCE_DIR})
 target_compile_options(pinjaw_flags INTERFACE
@@ -12,6 +19,10 @@ target_compile_options(pinjaw_flags INTERFACE
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   # GCC 12 sees uninitialised members in moved-from std::string and std::variant temporaries that are not
   target_compile_options(pinjaw_flags INTERFACE -Wno-maybe-uninitialized)
+  if(CMAKE_UNITY_BUILD)
+    # it is meant for headers; a source compiled with others looks like one
+    target_compile_options(pinjaw_flags INTERFACE -Wno-subobject-linkage)
+  endif()
 endif()
 if(PINJAW_SANITIZE)
   target_compile_options(pinjaw_flags INTERFACE
