@@ -5,45 +5,10 @@
 #include <cmath>
 #include <utility>
 
-#include "host/geometry/bvh.hpp"
-#include "host/geometry/facet.hpp"
 #include "host/geometry/ray.hpp"
+#include "host/geometry/surface_index.hpp"
 
 namespace pinjaw::geometry {
-
-struct Surface::Index {
-  TriangleMesh mesh;
-  Box box;
-  std::vector<Facet> facets;       ///< in the order of the tree's leaves
-  std::vector<Box> boxes;          ///< theirs
-  std::vector<ShadowSpans> spans;  ///< theirs
-  Bvh tree{{}};
-  /// Two neighbouring points of a silhouette, in the order of the leaves of their tree.
-  struct Link {
-    Vector3d a_mm, b_mm;
-    double radius_mm;
-  };
-  std::vector<Link> links;
-  Bvh links_tree{{}};
-
-  explicit Index(TriangleMesh source);
-  void index_silhouettes();
-
-  /// Calls leaf(facet) for facets that may meet the region and the slab [slab.lo, slab.hi]; `slab` may shrink
-  /// while the walk goes on. Stops where leaf returns true.
-  template <class Region, class First, class Leaf>
-  void visit(const Region& region, const Slab& slab, First&& first, Leaf&& leaf) const;
-  [[nodiscard]] Hit hit_of(const Facet& facet, double distance_mm, const Vector3d& p_mm) const;
-  template <class Region>
-  [[nodiscard]] double lowest(const Region& region, Slab slab) const;
-  /// The lowest z and its facet; of facets as low the first of the mesh.
-  template <class Region>
-  [[nodiscard]] std::pair<double, const Facet*> lowest_facet(const Region& region) const;
-  template <class Region>
-  [[nodiscard]] double highest(const Region& region, Slab slab) const;
-  template <class Region>
-  [[nodiscard]] bool meets(const Region& region, const Slab& slab) const;
-};
 
 namespace {
 
@@ -53,18 +18,6 @@ Vector3d unit_or_zero(const Vector3d& v) {
   const double length = v.norm();
   return length > 0 ? Vector3d(v / length) : Vector3d(Vector3d::Zero());
 }
-
-/// `z` cut to the slab; empty where nothing is left.
-Interval within(const Interval& z, const Slab& slab) {
-  return {std::max(z.lo, slab.lo_mm), std::min(z.hi, slab.hi_mm)};
-}
-
-constexpr auto kLowerFirst = [](const Bvh::Node& a, const Bvh::Node& b) {
-  return a.box.lo.z() < b.box.lo.z();
-};
-constexpr auto kHigherFirst = [](const Bvh::Node& a, const Bvh::Node& b) {
-  return a.box.hi.z() > b.box.hi.z();
-};
 
 }  // namespace
 
@@ -111,101 +64,38 @@ void Surface::Index::index_silhouettes() {
   for (const int i : links_tree.order()) links.push_back(given[static_cast<std::size_t>(i)]);
 }
 
-template <class Region, class First, class Leaf>
-void Surface::Index::visit(const Region& region, const Slab& slab, First&& first, Leaf&& leaf) const {
-  const auto outside = [&](const Box& candidate) {
-    return candidate.lo.z() > slab.hi_mm || candidate.hi.z() < slab.lo_mm || !region.may_meet(candidate);
-  };
-  tree.walk([&](const Bvh::Node& node) { return outside(node.box); }, first,
-            [&](const Bvh::Node& node) {
-              const auto end = static_cast<std::size_t>(node.first + node.count);
-              for (auto i = static_cast<std::size_t>(node.first); i < end; ++i) {
-                if (outside(boxes[i]) || !region.may_meet(facets[i]) || spans[i].apart_from(region)) continue;
-                if (leaf(facets[i])) return true;
-              }
-              return false;
-            });
-}
-
 Hit Surface::Index::hit_of(const Facet& facet, double distance_mm, const Vector3d& p_mm) const {
   const auto at = static_cast<std::size_t>(facet.triangle);
   return {distance_mm, p_mm, facet.normal, facet.triangle, at < mesh.face_of.size() ? mesh.face_of[at] : 0};
 }
 
-template <class Region>
-double Surface::Index::lowest(const Region& region, Slab slab) const {
-  double best = kInfinity;
-  visit(region, slab, kLowerFirst, [&](const Facet& facet) {
-    const Interval z = within(z_range_over(facet, region), slab);
-    if (z.lo > z.hi) return false;
-    best = z.lo;
-    slab.hi_mm = std::nextafter(z.lo, -kInfinity);  // what is as low need not be looked at
-    return best <= slab.lo_mm;
-  });
-  return best;
-}
-
-template <class Region>
-std::pair<double, const Facet*> Surface::Index::lowest_facet(const Region& region) const {
-  Slab slab;
-  std::pair<double, const Facet*> best{kInfinity, nullptr};
-  visit(region, slab, kLowerFirst, [&](const Facet& facet) {
-    const Interval z = within(z_range_over(facet, region), slab);
-    if (z.lo > z.hi || z.lo > best.first) return false;
-    if (z.lo == best.first && best.second != nullptr && facet.triangle > best.second->triangle) return false;
-    best = {z.lo, &facet};
-    slab.hi_mm = z.lo;
-    return false;
-  });
-  return best;
-}
-
-template <class Region>
-double Surface::Index::highest(const Region& region, Slab slab) const {
-  double best = -kInfinity;
-  visit(region, slab, kHigherFirst, [&](const Facet& facet) {
-    const Interval z = within(z_range_over(facet, region), slab);
-    if (z.lo > z.hi) return false;
-    best = z.hi;
-    slab.lo_mm = std::nextafter(z.hi, kInfinity);  // what is as high need not be looked at
-    return best >= slab.hi_mm;
-  });
-  return best;
-}
-
-template <class Region>
-bool Surface::Index::meets(const Region& region, const Slab& slab) const {
-  bool met = false;
-  visit(region, slab, kLowerFirst, [&](const Facet& facet) {
-    const Interval z = within(z_range_over(facet, region), slab);
-    met = z.lo <= z.hi;
-    return met;
-  });
-  return met;
+std::optional<Hit> Surface::Index::lowest_hit(const std::pair<double, const Facet*>& found,
+                                              const Vector2d& p_mm) const {
+  const auto& [z_mm, facet] = found;
+  if (facet == nullptr) return std::nullopt;
+  return hit_of(*facet, z_mm - box.lo.z(), {p_mm.x(), p_mm.y(), z_mm});
 }
 
 Surface::Surface(TriangleMesh mesh) : index_(std::make_shared<const Index>(std::move(mesh))) {}
 
 double Surface::lowest_z_mm(const Sweep& region, const Slab& slab) const {
-  return index_->lowest(Stadium(region), slab);
+  return lowest(*index_, Stadium(region), slab);
 }
 
 double Surface::highest_z_mm(const Sweep& region, const Slab& slab) const {
-  return index_->highest(Stadium(region), slab);
+  return highest(*index_, Stadium(region), slab);
 }
 
 bool Surface::meets(const Sweep& region, const Slab& slab) const {
-  return index_->meets(Stadium(region), slab);
+  return geometry::meets(*index_, Stadium(region), slab);
 }
 
 bool Surface::meets(const Rectangle& region, const Slab& slab) const {
-  return index_->meets(Oblong(region), slab);
+  return geometry::meets(*index_, Oblong(region), slab);
 }
 
 std::optional<Hit> Surface::lowest_above(const Vector2d& p_mm) const {
-  const auto [z_mm, facet] = index_->lowest_facet(Stadium({p_mm, p_mm, 0}));
-  if (facet == nullptr) return std::nullopt;
-  return index_->hit_of(*facet, z_mm - index_->box.lo.z(), {p_mm.x(), p_mm.y(), z_mm});
+  return index_->lowest_hit(lowest_facet(*index_, Stadium({p_mm, p_mm, 0})), p_mm);
 }
 
 std::optional<Hit> Surface::first_hit(const Ray& ray) const {

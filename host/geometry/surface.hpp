@@ -83,6 +83,7 @@ class Surface {
   [[nodiscard]] Interval z_range_mm() const;
 
  private:
+  friend class Patch;
   struct Index;
   std::shared_ptr<const Index> index_;
 };

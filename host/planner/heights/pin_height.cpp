@@ -4,12 +4,14 @@
 #include <numeric>
 #include <optional>
 
+#include "host/geometry/patch.hpp"
 #include "host/model/tolerance.hpp"
 #include "host/planner/heights/heights.hpp"
 
 namespace pinjaw::planner {
 namespace {
 
+using geometry::Patch;
 using geometry::Slab;
 using geometry::Surface;
 using geometry::Sweep;
@@ -24,11 +26,19 @@ Sweep disc(const Vector2d& center_mm, double radius_mm) {
   return {center_mm, center_mm, radius_mm};
 }
 
+Vector2d axis_mm(const model::PinStock& pins, const Foot& foot) {
+  return foot.p_PFoot_mm - pins.radius_mm * foot.n_P;
+}
+
+/// All of the part that a pin at this foot can have to do with.
+Patch around(const Surface& part, const model::PinStock& pins, const Foot& foot) {
+  return {part, disc(axis_mm(pins, foot), pins.radius_mm + 3 * model::kEps_mm)};
+}
+
 /// The three rays of BB 3.3: what a pin there may touch and how tall it may be.
-PinHeight probe(const Surface& part, const model::PinStock& pins, const Foot& foot) {
-  const Vector2d axis_mm = foot.p_PFoot_mm - pins.radius_mm * foot.n_P;
-  const Sweep large = disc(axis_mm, pins.radius_mm + model::kEps_mm);
-  const Sweep small = disc(axis_mm, pins.radius_mm - model::kEps_mm);
+PinHeight probe(const Patch& part, const model::PinStock& pins, const Foot& foot) {
+  const Sweep large = disc(axis_mm(pins, foot), pins.radius_mm + model::kEps_mm);
+  const Sweep small = disc(axis_mm(pins, foot), pins.radius_mm - model::kEps_mm);
   PinHeight pin;
   pin.contact_min_mm = part.lowest_z_mm(large);
   pin.height_max_mm = part.lowest_z_mm(small);
@@ -45,7 +55,7 @@ std::optional<double> longest_mm(const model::PinStock& pins, double most_mm) {
   return *std::prev(above);
 }
 
-model::Interval contact_z_mm(const Surface& part, const Foot& foot, double top_mm) {
+model::Interval contact_z_mm(const Patch& part, const Foot& foot, double top_mm) {
   const Sweep touch = disc(foot.p_PFoot_mm, 2 * model::kEps_mm);
   const Slab below{.hi_mm = top_mm};
   const model::Interval z{part.lowest_z_mm(touch, below), part.highest_z_mm(touch, below)};
@@ -69,18 +79,20 @@ model::Interval top_mm(const PinHeight& pin, const model::PinStock& pins) {
 }  // namespace
 
 std::optional<TopRange> top_range(const Surface& part, const model::PinStock& pins, const Foot& foot) {
-  const auto edge = part.lowest_above(foot.p_PFoot_mm + model::kEps_mm * foot.n_P);
+  const Patch patch = around(part, pins, foot);
+  const auto edge = patch.lowest_above(foot.p_PFoot_mm + model::kEps_mm * foot.n_P);
   if (!edge) return std::nullopt;
-  PinHeight pin = probe(part, pins, foot);
+  PinHeight pin = probe(patch, pins, foot);
   pin.z_edge_mm = edge->point_mm.z();
   return TopRange{pin.z_edge_mm, top_mm(pin, pins)};
 }
 
 PinHeightOutcome pin_height(const Surface& part, const model::PinStock& pins, double plate_top_mm,
                             const Foot& foot) {
-  const auto edge = part.lowest_above(foot.p_PFoot_mm + model::kEps_mm * foot.n_P);
+  const Patch patch = around(part, pins, foot);
+  const auto edge = patch.lowest_above(foot.p_PFoot_mm + model::kEps_mm * foot.n_P);
   if (!edge) return tl::unexpected(HeightLoss::NoSurfaceAtFoot);
-  PinHeight pin = probe(part, pins, foot);
+  PinHeight pin = probe(patch, pins, foot);
   pin.z_edge_mm = touched_mm(part, foot, edge->point_mm.z());
   const auto [least_mm, most_mm] = top_mm(pin, pins);
   if (most_mm < least_mm) return tl::unexpected(HeightLoss::NoEngagement);
@@ -91,7 +103,7 @@ PinHeightOutcome pin_height(const Surface& part, const model::PinStock& pins, do
   pin.top_mm = pins.lengths_mm.empty() ? most_mm : plate_top_mm + *length_mm;
   if (pin.top_mm < least_mm) return tl::unexpected(HeightLoss::StockTooShort);
 
-  pin.contact_z_mm = contact_z_mm(part, foot, pin.top_mm);
+  pin.contact_z_mm = contact_z_mm(patch, foot, pin.top_mm);
   pin.contact_z_mm = {touched_mm(part, foot, pin.contact_z_mm.lo),
                       touched_mm(part, foot, pin.contact_z_mm.hi)};
   if (pin.contact_z_mm.lo > pin.contact_z_mm.hi) return tl::unexpected(HeightLoss::NoSurfaceAtFoot);
