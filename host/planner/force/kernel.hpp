@@ -55,7 +55,7 @@ inline constexpr int kLogical = 32;  ///< + row: not a ray at all, must be 0
 inline constexpr int kNone = 255;
 }  // namespace lane
 
-/// One of the above for each of the 8 lanes, in a byte each.
+/// One number for each of the 8 lanes, in a byte each.
 using Lanes = std::uint64_t;
 inline int lane_of(Lanes lanes, int i) {
   return static_cast<int>((lanes >> (8 * i)) & 0xff);
@@ -73,6 +73,7 @@ struct alignas(64) Vertex {
   double dual_excess;    ///< largest violation of A'y <= c, and of equality on the basis
   std::uint32_t tight;   ///< bit j: ray j is in the basis
   Lanes lanes;
+  Lanes columns;              ///< of Program::column, what each lane multiplies
   std::int16_t next[kLanes];  ///< the vertex at the other end of a lane's edge
   std::uint8_t logical;       ///< bit i: lane i is a logical
 };

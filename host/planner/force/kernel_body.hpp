@@ -14,8 +14,12 @@ namespace {
 
 constexpr double kPrimalTolerance = 1e-10;  // of |b|; measured: 1e-12 and 1e-13 change nothing
 constexpr double kFarkasDepth =
-    1e-9;                       // of a unit step and |b|: how clearly an infeasible load must lie outside
+    1e-9;  // of a unit step and |b|: how clearly an infeasible load must lie outside
+constexpr double kSoundExcess =
+    1e-6;                       // of a reduced cost: a vertex further out is rounding and leads nowhere
 constexpr int kMaxSteps = 100;  // an ordinary walk takes 1 or 2
+
+constexpr int kFewAnswers = 24;  // chosen (measured: 48 is slower)
 
 /// A right-hand side.
 struct Load {
@@ -53,7 +57,7 @@ inline Octet best_answers(const Memory& memory, const Octet (&b)[kRows]) {
     Octet value = b[0] * all(y[0]);
     for (int k = 1; k < kRows; ++k) value = value + b[k] * all(y[k]);
     const Mask higher = below(best, value);
-    best = choose(higher, value, best);
+    best = larger(best, value);
     best_place = choose(higher, all(place), best_place);
   }
   return best_place;
@@ -94,7 +98,7 @@ inline int keep(Memory& memory, unsigned slot) {
 inline int first_vertex(const Program& program, Memory& memory, const Loads& loads, int load) {
   Vertex scratch[2];
   Vertex* at = &scratch[0];
-  at->lanes = 0;
+  at->lanes = at->columns = 0;
   for (int k = 0; k < kRows; ++k) {
     for (int i = 0; i < kLanes; ++i) at->inverse[k][i] = k == i ? 1 : 0;
     at->y[k] = 0;
@@ -102,6 +106,7 @@ inline int first_vertex(const Program& program, Memory& memory, const Loads& loa
   for (int i = 0; i < kLanes; ++i) {
     at->length2[i] = at->per_length2[i] = 1;
     put(at->lanes, i, i < kRows ? lane::kLogical + i : lane::kNone);
+    put(at->columns, i, i < kRows ? kUnit + i : kNothing);
     at->next[i] = kUnknown;
   }
   at->inverse_error = -1;
@@ -142,6 +147,7 @@ inline int next_vertex(const Program& program, Memory& memory, int from, int lan
   Vertex& to = memory.vertex[memory.vertices];
   if (!walk(program, memory.vertex[from], change, to)) return kUnknown;
   settle_costs(program, to);
+  if (!(to.dual_excess <= kSoundExcess && to.y_sum < __builtin_inf())) return kUnknown;
   to.next[lane] = static_cast<std::int16_t>(from);
   return keep(memory, slot);
 }
@@ -196,7 +202,9 @@ inline void solve_from(const Program& program, Memory& memory, const Loads& load
       return;
     }
     const Octet depth = x * magnitude(x) * load(vertex.per_length2);
-    const int lane = lowest_bit(lanes_at(depth, least_of(depth)));
+    const unsigned deepest = lanes_at(depth, least_of(depth));
+    if (deepest == 0) return;  // NaN
+    const int lane = lowest_bit(deepest);
     int next = vertex.next[lane];
     if (next == kUnknown) {
       next = next_vertex(program, memory, at, lane);
@@ -215,19 +223,23 @@ inline void solve_from(const Program& program, Memory& memory, const Loads& load
 
 void solve(const Program& program, Memory& memory, const double* b, int stride, int count, Answer* answers) {
   const Loads loads{b, stride};
-  for (int first = 0; first < count; first += kLanes) {
+  for (int first = 0; first < count;) {
     if (memory.vertices > kMaxVertices / 2) forget(memory);
     if (memory.vertices == 0) first_vertex(program, memory, loads, first);
+    // one at a time while each is likely to find an answer that the next can use
+    const int width = memory.answers < kFewAnswers || first % kLanes != 0 ? 1 : kLanes;
     Octet block[kRows];
-    for (int k = 0; k < kRows; ++k) block[k] = load(b + k * stride + first);
+    for (int k = 0; k < kRows; ++k)
+      block[k] = width == 1 ? all(loads.at(k, first)) : load(b + k * stride + first);
     alignas(64) double place[kLanes];
     store(place, best_answers(memory, block));
     const bool known = memory.answers > 0;
-    const int last = first + kLanes < count ? first + kLanes : count;
+    const int last = first + width < count ? first + width : count;
     for (int i = first; i < last; ++i) {
       const int start = known ? memory.answer[static_cast<int>(place[i - first])] : 0;
       solve_from(program, memory, loads, i, start, answers[i]);
     }
+    first = last;
   }
 }
 

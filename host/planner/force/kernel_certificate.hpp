@@ -14,50 +14,25 @@ inline double magnitude(double a) {
   return a < 0 ? -a : a;
 }
 
-/// The columns that a vertex's lanes multiply.
-struct LaneColumns {
-  int index[kLanes];
-  unsigned sums =
-      0;  // lanes of `up` where a pin sticks on several plan rays: there up + down is the sum of the rays
-};
-
-/// Without a branch, for what a lane stands for is hard to predict.
-inline LaneColumns columns_of(const Program& program, const Vertex& vertex) {
-  LaneColumns columns;
+/// The lanes of `up` where a pin sticks on several plan rays: there up + down is the sum of the rays.
+inline unsigned sums_of(const Vertex& vertex) {
+  unsigned sums = 0;
   for (int i = 0; i < kLanes; ++i) {
-    const int what = lane_of(vertex.lanes, i);
-    const int ray = what % kPlanRays;
-    const std::uint32_t up = (vertex.tight >> ray) & 1U;
-    const std::uint32_t down = (vertex.tight >> (ray + kPlanRays)) & 1U;
-    const int pin = what % kMaxPins;
-    const std::uint32_t rays = vertex.tight & program.rays_of_pin[pin];
-    const int only = lowest_bit(rays | (1U << kPlanRays));
-    const bool alone = is_single(rays);
-    const int of_ray =
-        ray + static_cast<int>(down + (up & down)) * kPlanRays;  // up, down, or middle where both are tight
-    const int of_kind[] = {of_ray,
-                           of_ray,
-                           alone ? only : kUpwards + pin,
-                           alone ? only + kPlanRays : kDownwards + pin,
-                           kUnit + what % kMaxPins,
-                           kNothing};
-    const int kind = what / 8;
-    columns.index[i] = of_kind[kind < 5 ? kind : 5];
-    columns.sums |= static_cast<unsigned>(kind == lane::kUp / 8 && !alone) << i;
+    const int column = lane_of(vertex.columns, i);
+    sums |= static_cast<unsigned>(column >= kUpwards && column < kDownwards) << i;
   }
-  return columns;
+  return sums;
 }
 
 inline double cost_of(const Program& program, int column) {
   return column < kUpwards ? program.cost[column % kPlanRays] : 0;
 }
-static_assert(kMiddle % kPlanRays == 0 && kMaxPins == 8 && lane::kUp == 16 && lane::kDown == 24 &&
-              lane::kLogical == 32);
+static_assert(kMiddle % kPlanRays == 0);
 
 /// Calls `function(up, down, rays)` with the lanes of each sum.
 template <class Function>
-inline void for_each_sum(const Program& program, const Vertex& vertex, unsigned sums, Function function) {
-  for (; sums != 0; sums &= sums - 1) {
+inline void for_each_sum(const Program& program, const Vertex& vertex, Function function) {
+  for (unsigned sums = sums_of(vertex); sums != 0; sums &= sums - 1) {
     const int up = lowest_bit(sums);
     const int pin = lane_of(vertex.lanes, up) - lane::kUp;
     unsigned rays = 0;
@@ -75,10 +50,9 @@ inline double sum_of(const double (&row)[kLanes], unsigned lanes) {
 
 /// product[k] = column k of B times the vertex's inverse. The largest difference from the unit matrix, or of
 /// a sum from what it should be.
-inline double multiply_back(const Program& program, const Vertex& vertex, const LaneColumns& columns,
-                            Octet (&product)[kRows]) {
+inline double multiply_back(const Program& program, const Vertex& vertex, Octet (&product)[kRows]) {
   Octet column[kLanes];
-  for (int i = 0; i < kLanes; ++i) column[i] = load(program.column[columns.index[i]]);
+  for (int i = 0; i < kLanes; ++i) column[i] = load(program.column[lane_of(vertex.columns, i)]);
   Octet worst = all(0);
   for (int k = 0; k < kRows; ++k) {
     product[k] = column[0] * all(vertex.inverse[k][0]);
@@ -86,7 +60,7 @@ inline double multiply_back(const Program& program, const Vertex& vertex, const 
     worst = larger(worst, magnitude(product[k] - load(program.column[kUnit + k])));
   }
   double error = largest_of(worst);
-  for_each_sum(program, vertex, columns.sums, [&](int up, int down, unsigned rays) {
+  for_each_sum(program, vertex, [&](int up, int down, unsigned rays) {
     for (const auto& row : vertex.inverse)
       error = larger(error, magnitude(row[up] + row[down] - sum_of(row, rays)));
   });
@@ -112,8 +86,7 @@ inline void settle_costs(const Program& program, Vertex& vertex) {
 }
 
 /// One Newton-Schulz step, inverse (2 I - B inverse), then y afresh.
-inline void refine(const Program& program, const LaneColumns& columns, const Octet (&product)[kRows],
-                   Vertex& vertex) {
+inline void refine(const Program& program, const Octet (&product)[kRows], Vertex& vertex) {
   Octet rows[kRows];
   for (int k = 0; k < kRows; ++k) rows[k] = load(vertex.inverse[k]);
   for (int k = 0; k < kRows; ++k) {
@@ -123,23 +96,23 @@ inline void refine(const Program& program, const LaneColumns& columns, const Oct
     spread(entries, factor);
     store(vertex.inverse[k], combine(rows, factor));
   }
-  for_each_sum(program, vertex, columns.sums, [&](int up, int down, unsigned rays) {
+  for_each_sum(program, vertex, [&](int up, int down, unsigned rays) {
     for (auto& row : vertex.inverse) row[up] = sum_of(row, rays) - row[down];
   });
   for (int k = 0; k < kRows; ++k) {
     vertex.y[k] = 0;
-    for (int i = 0; i < kLanes; ++i) vertex.y[k] += cost_of(program, columns.index[i]) * vertex.inverse[k][i];
+    for (int i = 0; i < kLanes; ++i)
+      vertex.y[k] += cost_of(program, lane_of(vertex.columns, i)) * vertex.inverse[k][i];
   }
 }
 
 /// Looks at a vertex's errors for the first time, and mends them once where they are worn.
 inline void certify(const Program& program, Vertex& vertex) {
-  const LaneColumns columns = columns_of(program, vertex);
   Octet product[kRows];
-  vertex.inverse_error = multiply_back(program, vertex, columns, product);
+  vertex.inverse_error = multiply_back(program, vertex, product);
   if (vertex.inverse_error <= kRefine && vertex.dual_excess <= kRefine) return;
-  refine(program, columns, product, vertex);
-  vertex.inverse_error = multiply_back(program, vertex, columns, product);
+  refine(program, product, vertex);
+  vertex.inverse_error = multiply_back(program, vertex, product);
   settle_costs(program, vertex);
 }
 

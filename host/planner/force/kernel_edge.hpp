@@ -6,7 +6,8 @@ namespace {
 
 // Chosen by comparison with quadruple precision (measured: pivots of 1e-11 do harm).
 constexpr double kPivotTolerance = 1e-9;  // of the length of the edge's row
-constexpr double kTie = 1e-12;            // reduced costs this close are equal: among them the largest pivot
+constexpr double kLongest2 = 1e24;  // squared length of a row past which a basis is no basis; nor is NaN
+constexpr double kTie = 1e-12;      // reduced costs this close are equal: among them the largest pivot
 constexpr double kFarkasExcess =
     1e-12;  // of the same: an edge without end may leave the polytope this slowly
 
@@ -109,19 +110,35 @@ struct Exchange {
   double reduced_cost = 0;  // of the entering column
   std::uint32_t tight = 0;
   Lanes lanes = 0;
+  Lanes columns = 0;
 };
+
+/// Lets the plan rays of a pin multiply the columns from `base` on.
+inline void set_columns(std::uint32_t rays, int base, Exchange& change) {
+  for (; rays != 0; rays &= rays - 1)
+    put(change.columns, find(change.lanes, lowest_bit(rays)), base + lowest_bit(rays));
+}
+
+inline void set_lane(int lane, int what, int column, Exchange& change) {
+  put(change.lanes, lane, what);
+  put(change.columns, lane, column);
+}
 
 /// Takes the lane's own variable out of the basis.
 inline void give_up(const Program& program, int entering_pin, Exchange& change) {
   const int gone = lane_of(change.lanes, change.lane);
-  put(change.lanes, change.lane, lane::kNone);
+  set_lane(change.lane, lane::kNone, kNothing, change);
   if (gone < lane::kUp) {
     const std::uint32_t rays = program.rays_of_pin[program.pin_of_ray[gone]];
     change.tight &= ~((1U << gone) | (1U << (gone + kPlanRays)));
     const std::uint32_t left = change.tight & (change.tight >> kPlanRays) & rays;
+    const int pin = program.pin_of_ray[gone];
+    if (left == 0 || !is_single(left) || pin == entering_pin) return;
     // a sticking pin's only plan ray is up + down: it needs no lane
-    if (left != 0 && is_single(left) && program.pin_of_ray[gone] != entering_pin)
-      put(change.lanes, find(change.lanes, lowest_bit(left)), lane::kNone);
+    const int only = lowest_bit(left);
+    set_lane(find(change.lanes, only), lane::kNone, kNothing, change);
+    put(change.columns, find(change.lanes, lane::kUp + pin), only);
+    put(change.columns, find(change.lanes, lane::kDown + pin), only + kPlanRays);
     return;
   }
   if (gone >= lane::kLogical) return;
@@ -130,7 +147,12 @@ inline void give_up(const Program& program, int entering_pin, Exchange& change) 
   change.tight &= ~(program.rays_of_pin[pin] << (was_up ? 0 : kPlanRays));
   const std::uint32_t left = (change.tight | (change.tight >> kPlanRays)) & program.rays_of_pin[pin];
   const int other = find(change.lanes, (was_up ? lane::kDown : lane::kUp) + pin);
-  put(change.lanes, other, is_single(left) ? lowest_bit(left) : lane::kNone);
+  if (is_single(left)) {
+    put(change.lanes, other, lowest_bit(left));
+    return;
+  }
+  set_lane(other, lane::kNone, kNothing, change);
+  set_columns(left, was_up ? kPlanRays : 0, change);
 }
 
 /// Lets a pin that slides stick: the force up or down that is at its limit moves off it.
@@ -145,9 +167,13 @@ inline void let_stick(const Program& program, const Vertex& from, int pin, bool 
   int other = 0;
   if (is_single(rays)) {
     other = find(change.lanes, first);
+    put(change.columns, change.lane, slides_up ? first + kPlanRays : first);
   } else {
     other = find(change.lanes, lane::kNone);
     change.spare = other;
+    put(change.columns, change.lane, change.column);
+    put(change.columns, other, (slides_up ? kUpwards : kDownwards) + pin);
+    set_columns(rays, kMiddle, change);
     for (std::uint32_t left = rays; left != 0; left &= left - 1)
       change.sum |= 1U << find(change.lanes, lowest_bit(left));
   }
@@ -162,14 +188,16 @@ inline void let_stick_more(const Program& program, int ray, int pin, Exchange& c
   const int down = find(change.lanes, lane::kDown + pin);
   change.column = kMiddle + ray;
   change.tight |= (1U << ray) | (1U << (ray + kPlanRays));
-  put(change.lanes, change.lane, ray);
+  set_lane(change.lane, ray, change.column, change);
   change.minus_half = (1U << up) | (1U << down);
   if (!is_single(rays)) return;
   const int only = lowest_bit(rays);
   if (find(change.lanes, only) >= 0) return;
   change.spare = find(change.lanes, lane::kNone);
   change.sum = change.minus_half;
-  put(change.lanes, change.spare, only);
+  set_lane(change.spare, only, kMiddle + only, change);
+  put(change.columns, up, kUpwards + pin);
+  put(change.columns, down, kDownwards + pin);
 }
 
 /// Whether a pin that slides comes to rest along the edge of a lane; else both rays of each of its pairs come
@@ -187,6 +215,7 @@ inline Exchange exchange_of(const Program& program, const Vertex& from, int give
   change.lane = given_up;
   change.tight = from.tight;
   change.lanes = from.lanes;
+  change.columns = from.columns;
   const int ray = entering % kPlanRays;
   const bool is_up = entering < kPlanRays;
   const int pin = program.pin_of_ray[ray];
@@ -203,12 +232,12 @@ inline Exchange exchange_of(const Program& program, const Vertex& from, int give
     change.column = ray_of_pair;
     change.reduced_cost = from.reduced_cost[ray_of_pair];
     change.tight |= 1U << ray_of_pair;
-    put(change.lanes, given_up, ray);
+    set_lane(given_up, ray, change.column, change);
   }
   return change;
 }
 
-/// Fills `to` but for what settle() does; false where the pivot is too small.
+/// Fills `to` but for what settle() does; false where the pivot is too small or the basis nearly singular.
 inline bool walk(const Program& program, const Vertex& from, const Exchange& change, Vertex& to) {
   Octet rows[kRows];
   for (int k = 0; k < kRows; ++k) rows[k] = load(from.inverse[k]);
@@ -240,11 +269,13 @@ inline bool walk(const Program& program, const Vertex& from, const Exchange& cha
     to.y[k] = from.y[k] + change.reduced_cost * step;
   }
   length2 = choose(empty, all(1), length2);
+  if (bits_of(below(length2, all(kLongest2))) != 0xff) return false;
   store(to.length2, length2);
   store(to.per_length2, all(1) / length2);
   to.inverse_error = -1;
   to.tight = change.tight;
   to.lanes = change.lanes;
+  to.columns = change.columns;
   to.logical = static_cast<std::uint8_t>(from.logical & ~(1U << change.lane));
   for (std::int16_t& next : to.next) next = kUnknown;
   return true;

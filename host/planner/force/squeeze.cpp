@@ -52,7 +52,7 @@ struct SqueezeSolver::Impl {
   Grasp grasp;
   GraspFrame frame;
   kernel::Program program{};
-  std::unique_ptr<kernel::Memory> memory = std::make_unique<kernel::Memory>();
+  std::unique_ptr<kernel::Memory> memory = std::make_unique_for_overwrite<kernel::Memory>();
   const kernel::Kernel& kernel = kernel::best_kernel();
   std::optional<ConeProgram> cone;
   std::optional<RayProgram> rays;

@@ -203,8 +203,9 @@ TEST(Kernels, of_every_instruction_set_give_the_same_bits) {
       for (int k = 1; k < count; ++k) {
         const auto other = answers_of(*all[k], program, loads);
         for (std::size_t i = 0; i < loads.size(); ++i) {
-          EXPECT_EQ(std::memcmp(&first[i].value, &other[i].value, sizeof first[i].value), 0) << all[k]->name;
-          EXPECT_EQ(first[i].status, other[i].status) << all[k]->name;
+          EXPECT_EQ(std::memcmp(&first[i].value, &other[i].value, sizeof first[i].value), 0)
+              << all[k]->name << " on " << zoo::name_of(family);
+          EXPECT_EQ(first[i].status, other[i].status) << all[k]->name << " on " << zoo::name_of(family);
         }
       }
     }
