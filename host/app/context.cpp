@@ -1,6 +1,7 @@
 #include "host/app/context.hpp"
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -8,9 +9,9 @@
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "host/app/interrupt.hpp"
+#include "host/app/progress.hpp"
 #include "host/base/files.hpp"
 
 namespace pinjaw::app {
@@ -25,61 +26,44 @@ bool in_color() {
   return is_terminal(stderr) && std::getenv("NO_COLOR") == nullptr;
 }
 
-/// One line that is written over and over: phase, count, share, time left.
-class LiveLine {
+/// Columns of the terminal that stderr is.
+int columns() {
+  winsize size{};
+  constexpr int kUsual = 80;
+  return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : kUsual;
+}
+
+double now_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// All at once, so that a terminal never shows half a line.
+void put_on_stderr(std::string_view bytes) {
+  if (bytes.empty()) return;
+  std::fwrite(bytes.data(), 1, bytes.size(), stderr);
+  std::fflush(stderr);
+}
+
+/// A display on the terminal, which it leaves tidy.
+class Screen {
  public:
-  void show(const planner::Progress& progress) {
-    const auto now = std::chrono::steady_clock::now();
-    if (progress.phase != phase_) {
-      finish();
-      phase_ = progress.phase;
-      started_ = now;
-    } else if (now - shown_ < std::chrono::milliseconds(100) && progress.done != progress.total) {
-      return;
-    }
-    shown_ = now;
-    std::string line = fmt::format("\r{:<12} {:>9}", progress.phase, progress.done);
-    if (progress.total > 0) {
-      line += fmt::format(" of {} ({} %)", progress.total, 100 * progress.done / progress.total);
-      const double elapsed_s = std::chrono::duration<double>(now - started_).count();
-      if (progress.done > 0 && progress.done < progress.total) {
-        const double rate = static_cast<double>(progress.done) / elapsed_s;
-        line += fmt::format(", {:.0f} s left", static_cast<double>(progress.total - progress.done) / rate);
-      }
-    }
-    fmt::print(stderr, "{}\033[K", line);
-    std::fflush(stderr);
+  explicit Screen(bool redraws) : display_(redraws) { shows_live_line(redraws); }
+  ~Screen() {
+    shows_live_line(false);
+    put_on_stderr(display_.finish(now_s(), columns()));
   }
-  ~LiveLine() { finish(); }
+  Screen(const Screen&) = delete;
+  Screen& operator=(const Screen&) = delete;
+  void show(const planner::Progress& progress) { put_on_stderr(display_.show(progress, now_s(), columns())); }
 
  private:
-  void finish() const {
-    if (!phase_.empty()) fmt::print(stderr, "\r\033[K");
-  }
-
-  std::string phase_;
-  std::chrono::steady_clock::time_point started_;
-  std::chrono::steady_clock::time_point shown_;
+  LiveDisplay display_;
 };
 
-/// One JSON object a line, of each phase the first and the last and a few a second between.
-class JsonLines {
- public:
-  void show(const planner::Progress& progress) {
-    const auto now = std::chrono::steady_clock::now();
-    const bool news = progress.phase != phase_ || progress.done == progress.total;
-    if (!news && now - shown_ < std::chrono::milliseconds(100)) return;
-    phase_ = progress.phase;
-    shown_ = now;
-    const nlohmann::ordered_json line = {
-        {"phase", progress.phase}, {"done", progress.done}, {"total", progress.total}};
-    fmt::print(stderr, "{}\n", line.dump());
-  }
-
- private:
-  std::string phase_;
-  std::chrono::steady_clock::time_point shown_;
-};
+bool can_redraw() {
+  const char* kind = std::getenv("TERM");
+  return kind != nullptr && std::string_view(kind) != "dumb";
+}
 
 }  // namespace
 
@@ -164,10 +148,12 @@ void Context::finish() {
 planner::ProgressSink Context::progress_sink() const {
   if (quiet || progress == ProgressMode::None) return {};
   if (progress == ProgressMode::Json) {
-    return [lines = std::make_shared<JsonLines>()](const planner::Progress& at) { lines->show(at); };
+    return [lines = std::make_shared<JsonDisplay>()](const planner::Progress& at) {
+      put_on_stderr(lines->show(at, now_s()));
+    };
   }
   if (!is_terminal(stderr)) return {};
-  return [line = std::make_shared<LiveLine>()](const planner::Progress& at) { line->show(at); };
+  return [screen = std::make_shared<Screen>(can_redraw())](const planner::Progress& at) { screen->show(at); };
 }
 
 }  // namespace pinjaw::app

@@ -55,7 +55,7 @@ class Context {
   /// Hands on what is left of the result; exit code 3 where stdout did not take it all.
   void finish();
 
-  /// Shows how far a plan has come: one live line on a terminal, JSON lines, or nothing.
+  /// Shows how far a command has come, until it is dropped: on a terminal, as JSON lines, or not at all.
   [[nodiscard]] planner::ProgressSink progress_sink() const;
 
  private:

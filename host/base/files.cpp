@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <optional>
@@ -71,10 +72,20 @@ int open_neighbour(const std::filesystem::path& path, std::filesystem::path& nam
   return -1;
 }
 
+/// The name of the neighbour file that is being written; nothing where none is.
+std::atomic<const char*> unfinished = nullptr;
+static_assert(std::atomic<const char*>::is_always_lock_free);
+
 void flush_folder(const std::filesystem::path& path) {
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
   const Descriptor opened(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (opened.is_open()) ::fsync(opened.number());
+}
+
+tl::unexpected<Failure> too_long(std::size_t at_most_bytes) {
+  constexpr std::size_t kMegabyte = 1U << 20U;
+  if (at_most_bytes % kMegabyte != 0) return failure(fmt::format("is longer than {} bytes", at_most_bytes));
+  return failure(fmt::format("is longer than {} MB", at_most_bytes / kMegabyte));
 }
 
 }  // namespace
@@ -86,6 +97,8 @@ Expected<std::string> read_file(const std::filesystem::path& path, std::size_t a
   if (::fstat(file.number(), &status) != 0) return failure("cannot be read: " + reason(errno));
   if (S_ISDIR(status.st_mode)) return failure("is a folder, not a file");
   if (!S_ISREG(status.st_mode)) return failure("is not a regular file");
+  if (status.st_size > 0 && static_cast<std::size_t>(status.st_size) > at_most_bytes)
+    return too_long(at_most_bytes);
   std::string bytes;
   std::array<char, 65536> piece{};
   while (true) {
@@ -94,7 +107,7 @@ Expected<std::string> read_file(const std::filesystem::path& path, std::size_t a
     if (count < 0) return failure("cannot be read: " + reason(errno));
     if (count == 0) return bytes;
     if (bytes.size() + static_cast<std::size_t>(count) > at_most_bytes) {
-      return failure(fmt::format("is longer than {} bytes", at_most_bytes));
+      return too_long(at_most_bytes);
     }
     bytes.append(piece.data(), static_cast<std::size_t>(count));
   }
@@ -113,16 +126,22 @@ Expected<void> write_file_whole(const std::filesystem::path& path, std::string_v
   std::filesystem::path part;
   Descriptor file(open_neighbour(target, part));
   if (!file.is_open()) return cannot_write(path, errno);
+  unfinished = part.c_str();
   const bool kept = !exists || ::fchmod(file.number(), status.st_mode & 07777U) == 0;
   const bool whole = kept && write_all(file.number(), bytes) && ::fsync(file.number()) == 0 && file.close() &&
                      ::rename(part.c_str(), target.c_str()) == 0;
+  const int error = errno;
+  unfinished = nullptr;
   if (!whole) {
-    const int error = errno;
     ::unlink(part.c_str());
     return cannot_write(path, error);
   }
   flush_folder(target);
   return {};
+}
+
+void drop_unfinished_file() noexcept {
+  if (const char* name = unfinished) ::unlink(name);
 }
 
 }  // namespace pinjaw::base

@@ -19,4 +19,8 @@ Expected<std::string> read_file(const std::filesystem::path& path,
 /// written straight.
 Expected<void> write_file_whole(const std::filesystem::path& path, std::string_view bytes);
 
+/// Removes the neighbour file that write_file_whole is writing, if any. For a signal handler that ends the
+/// program: it calls nothing else that such a handler may not.
+void drop_unfinished_file() noexcept;
+
 }  // namespace pinjaw::base

@@ -8,7 +8,7 @@ namespace pinjaw::base {
 
 Checked<JsonDocument> read_json_document(const std::filesystem::path& path, const std::string& format) {
   JsonDocument document{path.string(), {}, {}};
-  auto bytes = read_file(path);
+  auto bytes = read_file(path, kMaxJsonBytes);
   if (!bytes) return tl::unexpected(Diagnostics({{document.name, 0, 0}, "", bytes.error().message}));
   document.text = std::move(*bytes);
   auto value = parse_json(document.text, document.name);

@@ -8,6 +8,9 @@
 
 namespace pinjaw::base {
 
+/// Chosen: a plan with every design of a large kit takes a tenth; parsed it takes up to ten times as much.
+inline constexpr std::size_t kMaxJsonBytes = 256U << 20U;
+
 /// A JSON file that a program wrote, parsed, with the text that places its mistakes.
 struct JsonDocument {
   std::string name;  ///< of the file, as diagnostics call it

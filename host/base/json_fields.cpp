@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace pinjaw::base {
 
 namespace {
 
 std::string shown(const nlohmann::json& value) {
+  if (value.is_array()) return fmt::format("a list of {}", value.size());
+  if (value.is_object()) return "an object";
   std::string text = value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   constexpr std::size_t kMost = 40;
   if (text.size() > kMost) text = text.substr(0, kMost) + "…";
@@ -27,6 +30,35 @@ Place place_of_byte(std::string_view text, std::size_t byte, const std::string& 
     }
   }
   return place;
+}
+
+/// Where a value begins that lies deeper than kMaxJsonDepth; the parser does not limit depth itself.
+std::optional<std::size_t> first_deep_byte(std::string_view text) {
+  int depth = 0;
+  bool in_string = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (in_string && c == '\\') ++i;
+    if (c == '"') in_string = !in_string;
+    if (in_string) continue;
+    if (c == '[' || c == '{') ++depth;
+    if (c == ']' || c == '}') --depth;
+    if (depth > kMaxJsonDepth) return i + 1;
+  }
+  return std::nullopt;
+}
+
+tl::unexpected<Diagnostics> not_json(Place place, std::string why) {
+  return tl::unexpected(Diagnostics(Diagnostic{std::move(place), "", std::move(why)}));
+}
+
+/// The parser's sentence without its number and place; it may quote as much of the file as it has read.
+std::string sentence_of(std::string_view what) {
+  constexpr std::size_t kLongest = 200;
+  const std::size_t start = what.find(": ", what.find("column"));
+  std::string text(start == std::string_view::npos ? what : what.substr(start + 2));
+  if (text.size() > kLongest) text = text.substr(0, kLongest) + "...";
+  return "not JSON: " + text;
 }
 
 }  // namespace
@@ -48,17 +80,21 @@ JsonField JsonField::at(std::string_view key) const {
   return field;
 }
 
-double JsonField::number() const {
+double JsonField::number(const NumberRule& rule) const {
   if (value_ == nullptr) return 0;
-  if (value_->is_number() && std::isfinite(value_->get<double>())) return value_->get<double>();
-  expected("a number");
+  const double value = value_->is_number() ? value_->get<double>() : std::nan("");
+  if (std::isfinite(value) && rule.allows(value)) return value;
+  expected(rule.what);
   return 0;
 }
 
-std::int64_t JsonField::whole() const {
+std::int64_t JsonField::whole(const WholeRule& rule) const {
   if (value_ == nullptr) return 0;
-  if (value_->is_number_integer()) return value_->get<std::int64_t>();
-  expected("a whole number");
+  constexpr std::uint64_t kMost = std::numeric_limits<std::int64_t>::max();
+  const bool fits =
+      value_->is_number_integer() && (!value_->is_number_unsigned() || value_->get<std::uint64_t>() <= kMost);
+  if (fits && rule.allows(value_->get<std::int64_t>())) return value_->get<std::int64_t>();
+  expected(rule.what);
   return 0;
 }
 
@@ -101,13 +137,15 @@ std::vector<JsonField> JsonField::list() const {
   return entries;
 }
 
-std::vector<double> JsonField::numbers(std::size_t count) const {
-  std::vector<double> values;
-  for (const JsonField& entry : list()) values.push_back(entry.number());
-  if (value_ != nullptr && value_->is_array() && values.size() != count) {
-    mistake(fmt::format("expected {} numbers, found {}", count, values.size()));
+std::vector<double> JsonField::numbers(std::size_t count, const NumberRule& rule) const {
+  const std::vector<JsonField> entries = list();
+  std::vector<double> values(count);
+  if (value_ == nullptr || !value_->is_array()) return values;
+  if (entries.size() != count) {
+    mistake(fmt::format("expected {} numbers, found {}", count, entries.size()));
+    return values;
   }
-  values.resize(count);
+  for (std::size_t i = 0; i < count; ++i) values[i] = entries[i].number(rule);
   return values;
 }
 
@@ -129,15 +167,17 @@ void JsonField::expected(std::string_view what) const {
 }
 
 Checked<nlohmann::json> parse_json(std::string_view text, const std::string& file) {
+  if (const auto byte = first_deep_byte(text))
+    return not_json(place_of_byte(text, *byte, file), "nested too deeply");
   try {
     return nlohmann::json::parse(text);
   } catch (const nlohmann::json::parse_error& error) {
-    std::string message = error.what();
-    if (const auto colon = message.find(": ", message.find("column")); colon != std::string::npos) {
-      message = message.substr(colon + 2);
-    }
-    return tl::unexpected(
-        Diagnostics(Diagnostic{place_of_byte(text, error.byte, file), "", "not JSON: " + message}));
+    return not_json(place_of_byte(text, error.byte, file), sentence_of(error.what()));
+  } catch (const nlohmann::json::out_of_range& error) {  // of a number that no double holds
+    const std::string sentence = error.what();
+    const std::size_t from = sentence.find('\'') + 1;
+    const std::size_t byte = text.find(sentence.substr(from, sentence.find('\'', from) - from));
+    return not_json(place_of_byte(text, byte + 1, file), "a number too large to be read");
   }
 }
 

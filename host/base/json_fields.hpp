@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "host/base/diagnostics.hpp"
+#include "host/base/rules.hpp"
 
 /// Reads JSON that a program wrote, field by field: a wrong or missing field is a mistake with the field's
 /// path.
@@ -22,15 +23,15 @@ class JsonField {
 
   [[nodiscard]] bool has(std::string_view key) const;
   [[nodiscard]] JsonField at(std::string_view key) const;
-  [[nodiscard]] double number() const;
-  [[nodiscard]] std::int64_t whole() const;
+  [[nodiscard]] double number(const NumberRule& rule = {"a number"}) const;
+  [[nodiscard]] std::int64_t whole(const WholeRule& rule = {"a whole number"}) const;
   [[nodiscard]] std::string text() const;
   [[nodiscard]] bool truth() const;
   [[nodiscard]] std::vector<JsonField> list() const;
   /// Of an object, in their order in the document's value.
   [[nodiscard]] std::vector<std::string> keys() const;
   /// Exactly `count` numbers.
-  [[nodiscard]] std::vector<double> numbers(std::size_t count) const;
+  [[nodiscard]] std::vector<double> numbers(std::size_t count, const NumberRule& rule = {"a number"}) const;
   /// Position in `words` of the one that is written; 0 with a mistake where it is none of them.
   [[nodiscard]] std::size_t one_of(const std::vector<std::string>& words) const;
 
@@ -50,7 +51,11 @@ class JsonField {
   Diagnostics* mistakes_;
 };
 
-/// Parses `text`, called `file` in diagnostics; a syntax error tells line and column.
+/// Values of a JSON document hold each other to this depth at most; chosen: ours nest to 7.
+inline constexpr int kMaxJsonDepth = 64;
+
+/// Parses `text`, called `file` in diagnostics; a syntax error tells line and column, and so does a value
+/// that lies deeper than kMaxJsonDepth.
 Checked<nlohmann::json> parse_json(std::string_view text, const std::string& file);
 
 }  // namespace pinjaw::base

@@ -71,7 +71,8 @@ class Scanner {
       advance();
     }
     if (is_key) {
-      holders_.back().key = std::string(text_.substr(first, at_ - first));
+      constexpr std::size_t kLongest = 200;  // chosen: the paths of a longer key's values would take for ever
+      holders_.back().key = std::string(text_.substr(first, std::min(at_ - first, kLongest)));
       holders_.back().key_next = false;
     }
     advance();

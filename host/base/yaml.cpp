@@ -59,10 +59,6 @@ std::optional<std::int64_t> parse_whole(std::string_view text) {
   return value;
 }
 
-bool obeys(const NumberRule& rule, double value) {
-  return value >= rule.at_least && value <= rule.at_most && value > rule.above;
-}
-
 const YamlEntry* entry_of(const YamlNode* node, std::string_view key) {
   if (node == nullptr) return nullptr;
   const auto is_it = [key](const YamlEntry& entry) { return entry.key == key; };
@@ -92,7 +88,7 @@ void YamlValue::expected(std::string_view what) const {
 std::optional<double> YamlValue::number(const NumberRule& rule) const {
   const std::optional<double> value =
       node_->kind == YamlNode::Kind::Plain ? parse_number(node_->text) : std::nullopt;
-  if (value && obeys(rule, *value)) return value;
+  if (value && rule.allows(*value)) return value;
   expected(rule.what);
   return {};
 }
@@ -100,7 +96,7 @@ std::optional<double> YamlValue::number(const NumberRule& rule) const {
 std::optional<std::int64_t> YamlValue::whole(const WholeRule& rule) const {
   const std::optional<std::int64_t> value =
       node_->kind == YamlNode::Kind::Plain ? parse_whole(node_->text) : std::nullopt;
-  if (value && *value >= rule.at_least && *value <= rule.at_most) return value;
+  if (value && rule.allows(*value)) return value;
   expected(rule.what);
   return {};
 }

@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,6 +9,7 @@
 #include <vector>
 
 #include "host/base/diagnostics.hpp"
+#include "host/base/rules.hpp"
 
 /// A strict reader of YAML (of which JSON is a part). Every value knows its place and key path; each mistake
 /// goes into the file's diagnostics, and reading goes on, so that all of a file's mistakes are told at once.
@@ -17,21 +17,6 @@ namespace pinjaw::base {
 
 struct YamlNode;  // the tree, yaml.cpp's own
 class YamlMap;
-
-/// What a number must be. `what` names it in messages: "expected WHAT, found ...".
-struct NumberRule {
-  std::string what;
-  double at_least = -std::numeric_limits<double>::infinity();
-  double at_most = std::numeric_limits<double>::infinity();
-  double above = -std::numeric_limits<double>::infinity();  ///< strictly
-};
-
-/// What a whole number must be.
-struct WholeRule {
-  std::string what;
-  std::int64_t at_least = std::numeric_limits<std::int64_t>::min();
-  std::int64_t at_most = std::numeric_limits<std::int64_t>::max();
-};
 
 /// How many entries a list must have.
 struct CountRule {
@@ -130,13 +115,14 @@ class YamlMap {
   std::vector<std::string> known_;
 };
 
-/// One parsed file. Hostile files end in diagnostics: nesting, size and count of values are limited; anchors,
-/// aliases, tags and several documents are refused; a key given twice is reported.
+/// One parsed file. Hostile files end in diagnostics: nesting, size and counts of values and keys are
+/// limited; anchors, aliases, tags and several documents are refused; a key given twice is reported.
 class YamlFile {
  public:
   static constexpr std::size_t kMaxBytes = 4U << 20U;  ///< chosen: a hundred times the longest file of ours
   static constexpr int kMaxDepth = 32;                 ///< chosen: ours nest to 7
   static constexpr std::size_t kMaxValues = 200000;    ///< chosen: bounds memory to some 50 MB
+  static constexpr std::size_t kMaxKeys = 4000;        ///< of one mapping; chosen: ours have up to 20
 
   /// Reads and parses the file. What cannot be parsed leaves a file without a root and with diagnostics.
   explicit YamlFile(const std::filesystem::path& path);

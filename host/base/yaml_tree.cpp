@@ -107,6 +107,8 @@ class TreeBuilder : public YAML::EventHandler {
     const auto same = [&](const YamlEntry& other) { return other.key == entry.key; };
     const auto first = std::find_if(entries.begin(), entries.end(), same);
     if (first == entries.end()) {
+      if (entries.size() == YamlFile::kMaxKeys)
+        throw Refusal{{}, fmt::format("too many settings in one mapping (line {})", entry.line)};
       entries.push_back(std::move(entry));
       return;
     }

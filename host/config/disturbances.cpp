@@ -195,6 +195,24 @@ void refuse_samples(const Entry& entry) {
   }
 }
 
+/// How many loads a source stands for.
+std::int64_t loads_of(const model::DisturbanceSource& source) {
+  if (const auto* spray = std::get_if<model::Spray>(&source)) return spray->count;
+  const auto* acceleration = std::get_if<model::Acceleration>(&source);
+  return acceleration == nullptr ? 1 : static_cast<std::int64_t>(acceleration->along.size());
+}
+
+/// Each design is held against every load; so many bound memory to some 100 MB.
+void refuse_too_many(const std::vector<Entry>& entries) {
+  constexpr std::int64_t kMost = 1'000'000;
+  std::int64_t loads = 0;
+  for (const Entry& entry : entries) {
+    loads += loads_of(entry.source);
+    if (loads <= kMost) continue;
+    return entry.at.mistake(fmt::format("with this the task has {} loads; expected up to {}", loads, kMost));
+  }
+}
+
 }  // namespace
 
 DisturbanceLists read_disturbances(YamlMap& task) {
@@ -204,6 +222,7 @@ DisturbanceLists read_disturbances(YamlMap& task) {
   if (!task.has("disturbances") && task.present()) {
     task.mistake("lacks disturbances (a list; [] where the part is only located)");
   }
+  refuse_too_many(disturbances);
   DisturbanceLists lists;
   // Names made up come after all given ones, so that none of them takes a name from a later line.
   for (auto* entries : {&always, &disturbances}) {

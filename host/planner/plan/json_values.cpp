@@ -1,6 +1,9 @@
 #include "host/planner/plan/json_values.hpp"
 
+#include <limits>
 #include <numbers>
+
+#include "host/config/fields.hpp"
 
 namespace pinjaw::planner {
 
@@ -15,14 +18,23 @@ ordered_json pair_json(double first, double second) {
   return ordered_json::array({first, second});
 }
 
-geometry::Interval read_interval(const JsonField& field) {
-  const std::vector<double> ends = field.numbers(2);
+/// A part may stand far from its origin; chosen: beyond a kilometre a micrometre is lost to rounding.
+base::NumberRule coordinate() {
+  return {"a coordinate from -1e6 to 1e6 mm", -1e6, 1e6};
+}
+
+base::NumberRule force_or_margin() {
+  return {"newtons from -1e6 to 1e6", -config::kStrongest_n, config::kStrongest_n};
+}
+
+geometry::Interval read_interval(const JsonField& field, const base::NumberRule& rule) {
+  const std::vector<double> ends = field.numbers(2, rule);
   if (ends[0] > ends[1]) field.mistake("expected the lower end first");
   return {ends[0], ends[1]};
 }
 
-model::Vector2d read_vector2(const JsonField& field) {
-  const std::vector<double> values = field.numbers(2);
+model::Vector2d read_vector2(const JsonField& field, const base::NumberRule& rule) {
+  const std::vector<double> values = field.numbers(2, rule);
   return {values[0], values[1]};
 }
 
@@ -39,32 +51,31 @@ ordered_json pin_json(const model::PinDesign& pin) {
           {"feature", pin.feature}};
 }
 
+constexpr int kMostHoles = 64;             // of a row or column, as in kit files
+constexpr double kMostOfAUnit = 1 + 1e-9;  // chosen: the rounding of a written unit vector
+
+base::WholeRule hole_number() {
+  return config::whole_between("the number of a hole", 0, kMostHoles - 1);
+}
+
+int whole(const JsonField& field, const base::WholeRule& rule) {
+  return static_cast<int>(field.whole(rule));
+}
+
 model::PinDesign read_pin(const JsonField& field) {
   model::PinDesign pin;
   pin.hole.jaw =
       field.at("jaw").one_of({"left", "right"}) == 0 ? model::JawSide::Left : model::JawSide::Right;
-  pin.hole.column = static_cast<int>(field.whole("col"));
-  pin.hole.row = static_cast<int>(field.whole("row"));
-  pin.length_mm = field.number("length_mm");
-  pin.top_z_mm = field.number("top_z_mm");
-  pin.contact_z_mm = read_interval(field.at("contact_z_mm"));
-  pin.contact_mm = read_vector2(field.at("contact_mm"));
-  pin.normal = read_vector2(field.at("normal"));
-  pin.foot_margin_mm = field.number("foot_margin_mm");
-  pin.feature = static_cast<int>(field.whole("feature"));
+  pin.hole.column = whole(field.at("col"), hole_number());
+  pin.hole.row = whole(field.at("row"), hole_number());
+  pin.length_mm = field.at("length_mm").number(config::length_at_least_0());
+  pin.top_z_mm = field.at("top_z_mm").number(coordinate());
+  pin.contact_z_mm = read_interval(field.at("contact_z_mm"), coordinate());
+  pin.contact_mm = read_vector2(field.at("contact_mm"), coordinate());
+  pin.normal = read_vector2(field.at("normal"), {"a number from -1 to 1", -kMostOfAUnit, kMostOfAUnit});
+  pin.foot_margin_mm = field.at("foot_margin_mm").number(coordinate());
+  pin.feature = whole(field.at("feature"), {"the number of a feature", -1, std::numeric_limits<int>::max()});
   return pin;
-}
-
-double not_negative(const JsonField& field) {
-  const double value = field.number();
-  if (value < 0) field.mistake("expected 0 or a number above");
-  return value;
-}
-
-double positive(const JsonField& field) {
-  const double value = field.number();
-  if (value <= 0) field.mistake("expected a number above 0");
-  return value;
 }
 
 }  // namespace
@@ -146,46 +157,66 @@ ordered_json design_json(const model::Design& design) {
 }
 
 model::Vector3d read_vector3(const JsonField& field) {
-  const std::vector<double> values = field.numbers(3);
+  const std::vector<double> values = field.numbers(3, coordinate());
   return {values[0], values[1], values[2]};
 }
 
 geometry::Pose2 read_pose(const JsonField& field) {
-  return {field.number("theta_deg") * kDegree, {field.number("x_mm"), field.number("y_mm")}};
+  return {field.at("theta_deg").number({"an angle from -1e6 to 1e6 degrees", -1e6, 1e6}) * kDegree,
+          {field.at("x_mm").number(coordinate()), field.at("y_mm").number(coordinate())}};
 }
 
 Friction read_friction(const JsonField& field) {
   const bool pyramid = field.at("model").one_of({"pyramid", "cone"}) == 0;
-  return {field.number("mu"), pyramid ? model::FrictionModel::Pyramid : model::FrictionModel::Cone};
+  return {field.at("mu").number({"a friction coefficient from 0 to 10", 0, 10}),
+          pyramid ? model::FrictionModel::Pyramid : model::FrictionModel::Cone};
 }
+
+namespace {
+
+model::PinStock read_pins_json(const JsonField& field) {
+  model::PinStock pins;
+  pins.radius_mm = field.at("radius_mm").number(config::length_above_0());
+  for (const JsonField& length : field.at("lengths_mm").list()) {
+    pins.lengths_mm.push_back(length.number(config::length_above_0()));
+  }
+  pins.min_engagement_mm = field.at("min_engagement_mm").number(config::length_above_0());
+  pins.protrusion_mm = field.at("protrusion_mm").number(config::length_at_least_0());
+  pins.clearance_mm = field.at("clearance_mm").number(config::length_at_least_0());
+  pins.min_foot_margin_mm = field.at("min_foot_margin_mm").number(config::length_at_least_0());
+  return pins;
+}
+
+model::Jaws read_jaws_json(const JsonField& field) {
+  model::Jaws jaws;
+  jaws.separation_mm = read_interval(field.at("separation_mm"), config::length_at_least_0());
+  jaws.plate_gap_mm = field.at("plate_gap_mm").number(config::length_at_least_0());
+  jaws.plate_thickness_mm = field.at("plate_thickness_mm").number(config::length_above_0());
+  if (field.has("opening_mm")) jaws.opening_mm = field.at("opening_mm").number(config::length_above_0());
+  return jaws;
+}
+
+}  // namespace
 
 model::Kit read_kit_json(const JsonField& field) {
   model::Kit kit;
   kit.name = field.text("name");
   kit.sha256 = field.text("sha256");
   const JsonField grid = field.at("grid");
-  kit.grid.spacing_mm = positive(grid.at("spacing_mm"));
-  kit.grid.columns = static_cast<int>(grid.whole("columns"));
-  kit.grid.rows = static_cast<int>(grid.whole("rows"));
-  kit.grid.edge_offset_mm = grid.number("edge_offset_mm");
-  const JsonField pins = field.at("pins");
-  kit.pins.radius_mm = positive(pins.at("radius_mm"));
-  for (const JsonField& length : pins.at("lengths_mm").list())
-    kit.pins.lengths_mm.push_back(positive(length));
-  kit.pins.min_engagement_mm = pins.number("min_engagement_mm");
-  kit.pins.protrusion_mm = pins.number("protrusion_mm");
-  kit.pins.clearance_mm = pins.number("clearance_mm");
-  kit.pins.min_foot_margin_mm = pins.number("min_foot_margin_mm");
-  const JsonField jaws = field.at("jaws");
-  kit.jaws.separation_mm = read_interval(jaws.at("separation_mm"));
-  kit.jaws.plate_gap_mm = jaws.number("plate_gap_mm");
-  kit.jaws.plate_thickness_mm = jaws.number("plate_thickness_mm");
-  if (jaws.has("opening_mm")) kit.jaws.opening_mm = jaws.number("opening_mm");
-  kit.actuator.max_squeeze_n = not_negative(field.at("actuator").at("max_squeeze_n"));
-  kit.actuator.force_uncertainty_n = field.at("actuator").number("force_uncertainty_n");
+  kit.grid.spacing_mm = grid.at("spacing_mm").number(config::length_above_0());
+  kit.grid.columns = whole(grid.at("columns"), config::whole_between("a count of columns", 1, kMostHoles));
+  kit.grid.rows = whole(grid.at("rows"), config::whole_between("a count of rows", 1, kMostHoles));
+  kit.grid.edge_offset_mm = grid.at("edge_offset_mm").number(config::length_at_least_0());
+  kit.pins = read_pins_json(field.at("pins"));
+  kit.jaws = read_jaws_json(field.at("jaws"));
+  kit.actuator.max_squeeze_n = field.at("actuator").at("max_squeeze_n").number(config::force_at_least_0());
+  kit.actuator.force_uncertainty_n =
+      field.at("actuator").at("force_uncertainty_n").number(config::force_at_least_0());
   const JsonField grip = field.at("grip");
-  kit.grip = {grip.number("light_n"), grip.number("separation_tol_mm"), grip.number("slip_tol_mm"),
-              grip.number("stable_ms")};
+  kit.grip = {grip.at("light_n").number(config::force_at_least_0()),
+              grip.at("separation_tol_mm").number(config::length_above_0()),
+              grip.at("slip_tol_mm").number(config::length_above_0()),
+              grip.at("stable_ms").number({"milliseconds from 0 to 60000", 0, 60000})};
   return kit;
 }
 
@@ -195,18 +226,24 @@ model::Design read_design(const JsonField& field) {
   const std::vector<model::Split> splits = {model::Split::TwoTwo, model::Split::ThreeOne,
                                             model::Split::OneThree};
   design.split = splits[field.at("split").one_of({"2+2", "3+1", "1+3"})];
-  design.jaw_separation_mm = field.number("jaw_separation_mm");
-  design.jaw_open_mm = field.number("jaw_open_mm");
-  design.closure_margin = field.number("closure_margin");
+  design.jaw_separation_mm = field.at("jaw_separation_mm").number(config::length_at_least_0());
+  design.jaw_open_mm = field.at("jaw_open_mm").number(config::length_at_least_0());
+  design.closure_margin = field.at("closure_margin").number({"a share from -1 to 1", -1, 1});
   design.part_pose = read_pose(field.at("part_pose"));
   for (const JsonField& pin : field.at("pins").list()) design.pins.push_back(read_pin(pin));
+  if (design.pins.size() != 3 && design.pins.size() != 4) {
+    field.at("pins").mistake("expected 4 pins, of a pallet 3");
+  }
   const JsonField squeeze = field.at("squeeze");
-  design.squeeze = {squeeze.number("required_n"), squeeze.number("usable_n"), squeeze.number("limit_n"),
-                    squeeze.number("margin_n"), squeeze.text("critical")};
+  design.squeeze = {squeeze.at("required_n").number(config::force_at_least_0()),
+                    squeeze.at("usable_n").number(force_or_margin()),
+                    squeeze.at("limit_n").number(config::force_at_least_0()),
+                    squeeze.at("margin_n").number(force_or_margin()), squeeze.text("critical")};
+  const base::WholeRule shift = config::whole_between("a number of columns", -kMostHoles, kMostHoles);
   for (const JsonField& other : field.at("other_column_shifts").list()) {
-    design.alternatives.push_back({static_cast<int>(other.whole("left_shift")),
-                                   static_cast<int>(other.whole("right_shift")),
-                                   other.number("jaw_separation_mm")});
+    design.alternatives.push_back({whole(other.at("left_shift"), shift),
+                                   whole(other.at("right_shift"), shift),
+                                   other.at("jaw_separation_mm").number(config::length_at_least_0())});
   }
   return design;
 }

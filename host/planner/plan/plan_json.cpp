@@ -56,7 +56,8 @@ std::vector<model::Disturbance> read_disturbances(const JsonField& field) {
   for (const JsonField& entry : field.list()) {
     model::Disturbance disturbance;
     disturbance.name = entry.text("name");
-    const std::vector<double> wrench = entry.at("wrench").numbers(6);
+    const std::vector<double> wrench =
+        entry.at("wrench").numbers(6, {"a number from -1e12 to 1e12", -1e12, 1e12});
     for (int i = 0; i < 6; ++i) disturbance.wrench[i] = wrench[static_cast<std::size_t>(i)];
     disturbances.push_back(std::move(disturbance));
   }
@@ -99,7 +100,8 @@ base::Checked<Plan> read_plan(const std::filesystem::path& path) {
   Plan plan;
   plan.task = top.text("task");
   const JsonField part = top.at("part");
-  plan.part = {part.text("file"), part.text("sha256"), read_vector3(part.at("up")), part.number("mass_kg"),
+  plan.part = {part.text("file"), part.text("sha256"), read_vector3(part.at("up")),
+               part.at("mass_kg").number({"a mass from 0 to 1e6 kg", 0, 1e6}),
                read_vector3(part.at("centroid_mm"))};
   plan.kit = read_kit_json(top.at("kit"));
   plan.side = top.at("side").one_of({"below", "above"}) == 0 ? model::Side::Below : model::Side::Above;

@@ -1,11 +1,14 @@
 #include "tests/host/app/child.hpp"
 
 #include <fcntl.h>
+#include <poll.h>
+#include <pty.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <csignal>
 #include <fstream>
@@ -71,9 +74,17 @@ class Child {
     constexpr int kNew = O_WRONLY | O_CREAT | O_TRUNC;
     posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out_.c_str(), kNew, 0600);
     posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, err_.c_str(), kNew, 0600);
-    const int failed = posix_spawn(&process_, words.front().c_str(), &actions, nullptr,
+    posix_spawnattr_t attributes;  // a shell's background job ignores interrupts; these are sent to it
+    posix_spawnattr_init(&attributes);
+    sigset_t usual;
+    sigemptyset(&usual);
+    for (const int number : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&usual, number);
+    posix_spawnattr_setsigdefault(&attributes, &usual);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
+    const int failed = posix_spawn(&process_, words.front().c_str(), &actions, &attributes,
                                    pointers_to(words).data(), pointers_to(variables).data());
     posix_spawn_file_actions_destroy(&actions);
+    posix_spawnattr_destroy(&attributes);
     if (failed != 0) throw std::runtime_error("cannot start " + words.front());
   }
 
@@ -117,6 +128,50 @@ Ran Bench::interrupted(const std::string& arguments, int signal, double seconds)
   std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
   child.send(signal);
   return child.wait();
+}
+
+Ran Bench::on_terminal(const std::string& arguments, int columns, const std::string& typed,
+                       double seconds) const {
+  std::vector<std::string> words = split(arguments);
+  words.insert(words.begin(), test::program("pinjaw"));
+  std::vector<std::string> variables = plain_environment();
+  std::erase_if(variables, [](const std::string& each) { return each.starts_with("TERM="); });
+  variables.emplace_back("TERM=xterm");
+  variables.insert(variables.end(), environment_.begin(), environment_.end());
+  const std::vector<char*> argv = pointers_to(words);
+  const std::vector<char*> environment = pointers_to(variables);
+  winsize size{};
+  size.ws_row = 24;
+  size.ws_col = static_cast<unsigned short>(columns);
+  int terminal = -1;
+  const pid_t process = ::forkpty(&terminal, nullptr, nullptr, &size);
+  if (process < 0) throw std::runtime_error("no terminal");
+  if (process == 0) {
+    for (const int number : {SIGINT, SIGTERM, SIGHUP}) std::signal(number, SIG_DFL);
+    if (::chdir(folder_.c_str()) == 0) ::execve(argv.front(), argv.data(), environment.data());
+    ::_exit(127);
+  }
+  Ran ran;
+  bool has_typed = typed.empty();
+  const auto type_at = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+  std::array<char, 4096> piece{};
+  while (true) {
+    if (!has_typed && std::chrono::steady_clock::now() >= type_at) {
+      has_typed = ::write(terminal, typed.data(), typed.size()) > 0;
+    }
+    pollfd end{terminal, POLLIN, 0};
+    constexpr int kOftenMs = 5;
+    if (::poll(&end, 1, has_typed ? -1 : kOftenMs) <= 0) continue;
+    const ssize_t count = ::read(terminal, piece.data(), piece.size());
+    if (count <= 0) break;  // EIO: its other end is closed
+    ran.out.append(piece.data(), static_cast<std::size_t>(count));
+  }
+  int status = 0;
+  while (::waitpid(process, &status, 0) < 0) {
+  }
+  ::close(terminal);
+  ran.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return ran;
 }
 
 std::string Bench::write(const std::string& name, std::string_view bytes) const {

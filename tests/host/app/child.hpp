@@ -29,6 +29,10 @@ class Bench {
   [[nodiscard]] Ran run(const std::string& program, const std::string& arguments) const;
   /// Starts pinjaw, sends it `signal` after `seconds`, and waits for its end.
   [[nodiscard]] Ran interrupted(const std::string& arguments, int signal, double seconds) const;
+  /// Runs pinjaw with a terminal of so many columns as its input and outputs, and types `typed` after
+  /// `seconds`; all that the terminal was sent is in `out`.
+  [[nodiscard]] Ran on_terminal(const std::string& arguments, int columns, const std::string& typed = {},
+                                double seconds = 0) const;
 
   /// Writes a file of this folder; gives its name.
   std::string write(const std::string& name, std::string_view bytes) const;

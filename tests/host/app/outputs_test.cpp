@@ -106,6 +106,47 @@ TEST(Output, that_stdout_does_not_take_is_told) {
   EXPECT_THAT(full.err, HasSubstr("cannot write the result to stdout: No space left on device"));
 }
 
+TEST(Output, that_a_full_disk_does_not_take_whole_is_absent_or_the_old_one) {
+  const Bench bench;
+  const std::string limited = "--fsize=1000 " + test::program("pinjaw") + " plan " + kTask + " -o ";
+  const Ran fresh = bench.run("/usr/bin/prlimit", limited + "plan.json");
+  EXPECT_EQ(fresh.exit_code, 3);
+  EXPECT_THAT(fresh.err, HasSubstr("cannot write plan.json: File too large"));
+  EXPECT_TRUE(bench.names().empty());
+  bench.write("plan.json", "old");
+  EXPECT_EQ(bench.run("/usr/bin/prlimit", limited + "plan.json").exit_code, 3);
+  EXPECT_EQ(bench.read("plan.json"), "old");
+  EXPECT_THAT(bench.names(), ElementsAre("plan.json"));
+  EXPECT_EQ(bench.pinjaw("plan " + kTask + " -o /dev/full").exit_code, 3);
+}
+
+TEST(Interrupt, at_any_moment_of_a_plan_ends_it_with_130_and_leaves_a_whole_file_or_none) {
+  constexpr int kMoments = 24;
+  int ended = 0;
+  for (int i = 0; i < kMoments; ++i) {
+    const Bench bench;
+    const int signal = i % 3 == 0 ? SIGTERM : i % 3 == 1 ? SIGINT : SIGHUP;
+    const Ran ran = bench.interrupted("plan " + kTask + " --top all -o plan.json", signal, 0.02 * i);
+    EXPECT_TRUE(ran.exit_code == 130 || ran.exit_code == 0 || (i < 6 && ran.exit_code == -1))
+        << ran.exit_code;
+    ended += ran.exit_code == 130 ? 1 : 0;
+    EXPECT_TRUE(ran.exit_code != 0 || bench.has("plan.json"));
+    for (const std::string& name : bench.names()) {
+      EXPECT_EQ(name, "plan.json");
+      EXPECT_TRUE(json::accept(bench.read(name))) << "after " << 0.02 * i << " s";
+    }
+  }
+  EXPECT_GT(ended, 0);
+}
+
+TEST(Interrupt, that_the_caller_ignores_stays_ignored) {
+  const Bench bench;
+  bench.write("deaf.sh", "trap '' INT\n(sleep 0.1; kill -INT $$) &\nexec " + test::program("pinjaw") +
+                             " plan " + kTask + " -o plan.json\n");
+  const Ran ran = bench.run("/bin/sh", "deaf.sh");
+  EXPECT_EQ(ran.exit_code, 0);
+}
+
 TEST(Interrupt, ends_a_plan_with_130_and_leaves_no_file) {
   for (const int signal : {SIGINT, SIGTERM}) {
     const Bench bench;

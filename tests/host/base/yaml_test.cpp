@@ -86,6 +86,14 @@ TEST(Yaml, tells_a_key_given_twice_by_its_path) {
             "file.yaml:3:12: error: a[1].b: given twice; first in line 3\n1 mistake; stop\n");
 }
 
+TEST(Yaml, refuses_a_mapping_of_endless_settings) {
+  std::string text;
+  for (std::size_t i = 0; i <= YamlFile::kMaxKeys; ++i) text += "k" + std::to_string(i) + ": 1\n";
+  YamlFile file(text, "f");
+  EXPECT_EQ(render(file.mistakes(), "stop"),
+            "f:1:1: error: too many settings in one mapping (line 4001)\n1 mistake; stop\n");
+}
+
 TEST(Yaml, counts_mistakes_that_nobody_would_read) {
   std::string many;
   for (int i = 0; i < 3000; ++i) many += fmt::format("key{}: 1\n", i);
