@@ -90,6 +90,19 @@ class Child {
 
   void send(int signal) const { ::kill(process_, signal); }
 
+  /// Waits until it has said something on stderr, or has ended.
+  void wait_for_words() const {
+    const auto has_ended = [this] {
+      siginfo_t state{};
+      return ::waitid(P_PID, static_cast<id_t>(process_), &state, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+             state.si_pid != 0;
+    };
+    std::error_code ignored;
+    while (fs::file_size(err_, ignored) == 0 && !has_ended()) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  }
+
   Ran wait() {
     int status = 0;
     while (::waitpid(process_, &status, 0) < 0) {
@@ -125,6 +138,7 @@ Ran Bench::run(const std::string& program, const std::string& arguments) const {
 
 Ran Bench::interrupted(const std::string& arguments, int signal, double seconds) const {
   Child child(folder_, "pinjaw", arguments, environment_);
+  child.wait_for_words();
   std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
   child.send(signal);
   return child.wait();
@@ -136,8 +150,8 @@ Ran Bench::on_terminal(const std::string& arguments, int columns, const std::str
   words.insert(words.begin(), test::program("pinjaw"));
   std::vector<std::string> variables = plain_environment();
   std::erase_if(variables, [](const std::string& each) { return each.starts_with("TERM="); });
-  variables.emplace_back("TERM=xterm");
   variables.insert(variables.end(), environment_.begin(), environment_.end());
+  variables.emplace_back("TERM=xterm");  // where a test has set none, which comes first
   const std::vector<char*> argv = pointers_to(words);
   const std::vector<char*> environment = pointers_to(variables);
   winsize size{};

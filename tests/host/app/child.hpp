@@ -27,7 +27,8 @@ class Bench {
   /// build/bin/pinjaw with these arguments, split at blanks.
   [[nodiscard]] Ran pinjaw(const std::string& arguments) const { return run("pinjaw", arguments); }
   [[nodiscard]] Ran run(const std::string& program, const std::string& arguments) const;
-  /// Starts pinjaw, sends it `signal` after `seconds`, and waits for its end.
+  /// Starts pinjaw, sends it `signal` so many `seconds` after its first words on stderr, and waits for its
+  /// end.
   [[nodiscard]] Ran interrupted(const std::string& arguments, int signal, double seconds) const;
   /// Runs pinjaw with a terminal of so many columns as its input and outputs, and types `typed` after
   /// `seconds`; all that the terminal was sent is in `out`.

@@ -87,7 +87,7 @@ TEST(LiveDisplay, writes_over_its_line_a_few_times_a_second_and_leaves_finished_
   EXPECT_THAT(display.show({"features", 2, 2}, 100.2, kWide), HasSubstr("2 of 2"));
   const std::string next = display.show({"planar", 0, 50}, 101, kWide);
   EXPECT_EQ(next, "\r\033[Kfeatures             2   1.0 s\n\rplanar               0 of 50   0 % ...\033[K");
-  EXPECT_EQ(display.finish(103, kWide), "\r\033[Kplanar       0 of 50   2.0 s\n");
+  EXPECT_EQ(display.finish(103, kWide), "\r\033[Kplanar                   2.0 s\n");
   EXPECT_EQ(display.finish(104, kWide), "");
 }
 
@@ -146,7 +146,6 @@ TEST(Terminal, shows_live_lines_and_keeps_each_finished_phase) {
   EXPECT_THAT(ran.out, HasSubstr("\r"));
   std::vector<std::string> phases;
   for (const std::string& line : shown_by(ran.out)) {
-    EXPECT_LT(line.size(), 81U) << line;
     if (std::regex_search(line, std::regex("^[a-z]+ +[0-9]* +[0-9.]+ s$")))
       phases.push_back(line.substr(0, line.find(' ')));
   }

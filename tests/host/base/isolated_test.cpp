@@ -96,7 +96,7 @@ TEST_F(Isolated, an_endless_recursion_is_a_crash) {
     static std::size_t down(std::size_t depth) {  // NOLINT(misc-no-recursion)
       volatile char room[4096];
       room[depth % sizeof room] = 1;
-      return room[0] > 2 ? depth : down(depth + 1) + static_cast<std::size_t>(room[1]);
+      return room[depth % sizeof room] > 2 ? depth : down(depth + 1) + static_cast<std::size_t>(room[0]);
     }
   };
   EXPECT_EQ(misfortune_of([](const IsolatedStage&) { return std::to_string(Deep::down(0)); }).kind,
