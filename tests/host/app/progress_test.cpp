@@ -146,7 +146,7 @@ TEST(Terminal, shows_live_lines_and_keeps_each_finished_phase) {
     if (std::regex_search(line, std::regex("^[a-z]+ +[0-9]* +[0-9.]+ s$")))
       phases.push_back(line.substr(0, line.find(' ')));
   }
-  EXPECT_THAT(phases, testing::IsSupersetOf({"features", "planar", "heights", "force"})) << ran.out;
+  EXPECT_THAT(phases, testing::IsSupersetOf({"features", "planar", "designs"})) << ran.out;
   EXPECT_TRUE(bench.has("plan.json"));
 }
 
@@ -154,7 +154,7 @@ TEST(Terminal, of_few_columns_is_never_overrun_by_progress) {
   const Ran ran = Bench().on_terminal("plan " + kTask + " -o plan.json", 20);
   for (const std::string& line : shown_by(ran.out)) {
     if (line.starts_with("gripper") || line.find("   ") == std::string::npos) continue;
-    if (std::regex_search(line, std::regex("^(planar|heights|force|features) .*( s|\\.\\.\\.)$"))) {
+    if (std::regex_search(line, std::regex("^(planar|designs|features) .*( s|\\.\\.\\.)$"))) {
       EXPECT_LT(line.size(), 20U) << line;
     }
   }
