@@ -14,6 +14,8 @@ using Suite = std::pair<const char*, void (*)(pinjaw::bench::Report&)>;
 constexpr Suite kSuites[] = {
     {"squeeze", pinjaw::bench::measure_squeeze},
     {"planar", pinjaw::bench::measure_planar},
+    {"stand", pinjaw::bench::measure_stand},
+    {"plan", pinjaw::bench::measure_plan},
 };
 
 int usage(const std::string& wrong) {

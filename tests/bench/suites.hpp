@@ -7,5 +7,7 @@ namespace pinjaw::bench {
 
 void measure_squeeze(Report& report);
 void measure_planar(Report& report);
+void measure_stand(Report& report);
+void measure_plan(Report& report);
 
 }  // namespace pinjaw::bench
