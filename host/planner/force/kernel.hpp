@@ -17,6 +17,10 @@
 /// must be at least 0 at an optimum then are the plan rays and, for each sticking pin, up = (S + Z/h)/2 and
 /// down = (S - Z/h)/2: at most 8 linear functions of b, one a lane (two pins at most can stick with two plan
 /// rays each, 3 of the 6 dimensions).
+///
+/// A load in the plan still leaves many bases at one point y, of which few suit it. So costs are set apart
+/// from each other, by at most kApart of each: then each basis has a point of its own, and the look-up finds
+/// the one that suits. The least cost changes by at most kApart of it, which its certificate counts.
 namespace pinjaw::planner::kernel {
 
 inline constexpr int kRows = 6;
@@ -36,11 +40,15 @@ inline constexpr int kUnit = kDownwards + kMaxPins;     ///< + row: a unit vecto
 inline constexpr int kNothing = kUnit + kRows;          ///< zeros
 inline constexpr int kColumns = kNothing + 1;
 
+/// How far costs are set apart: far above rounding, far below what is certified. Measured: of the loads that
+/// start at a basis that does not suit though one is known, 1e-11 leaves 5 %.
+inline constexpr double kApart = 1e-11;
+
 /// A and c of one grasp. Every cost is above 0, so that y = 0 is dual feasible.
 struct alignas(64) Program {
   double plan[kRows - 1][kPlanRays];  ///< plan rays without their vertical force, which is 0
   double lift[3][kPlanRays];  ///< h times the vertical force's rows 2, 3 and 4, at each plan ray's pin
-  double cost[kPlanRays];     ///< the same for both rays of a pair; 1 where there is no ray
+  double cost[kPlanRays];     ///< set apart; the same for both rays of a pair; 1 where there is no ray
   double column[kColumns][kLanes];
   double least_cost;
   std::uint32_t rays_of_pin[kMaxPins];  ///< bit j: plan ray j
@@ -100,7 +108,7 @@ enum class Status : std::uint8_t {
 struct Answer {
   double value = 0;  ///< y.b
   Status status = Status::Doubtful;
-  const Vertex* vertex = nullptr;  ///< where Optimal; in the memory, until the next solve()
+  const Vertex* vertex = nullptr;  ///< where Optimal; in the memory, until that forgets
 };
 
 /// One instruction set's kernel.

@@ -116,11 +116,12 @@ inline void certify(const Program& program, Vertex& vertex) {
   settle_costs(program, vertex);
 }
 
-/// The bound on |y.b - F|: what x's negative part, the inverse's error and y's excess can change. With
-/// sum x <= F / least cost. NaN counts as doubtful.
+/// The bound on |y.b - F|: what x's negative part, the inverse's error, y's excess and costs set apart can
+/// change. With sum x <= F / least cost. NaN counts as doubtful.
 inline bool certified(const Program& program, const Vertex& vertex, double below, double size, double value) {
   const double error = vertex.y_sum * kRows * (below + vertex.inverse_error * size) +
-                       vertex.dual_excess * (magnitude(value) + 1) / program.least_cost;
+                       vertex.dual_excess * (magnitude(value) + 1) / program.least_cost +
+                       kApart * magnitude(value);
   return error <= kCertifiedError * larger(1, magnitude(value));
 }
 

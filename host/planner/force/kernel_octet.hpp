@@ -149,12 +149,11 @@ inline Mask mask_of(unsigned bits) {
   return result;
 }
 inline double least_of(Octet a) {
-  double least = a.v[0][0];
-  for (int i = 1; i < 8; ++i) {
-    const double here = a.v[i / kWidth][i % kWidth];
-    least = here < least ? here : least;
-  }
-  return least;
+  Pack least = a.v[0];
+  for (int p = 1; p < kPacks; ++p) least = a.v[p] < least ? a.v[p] : least;
+  double result = least[0];
+  for (int i = 1; i < kWidth; ++i) result = least[i] < result ? least[i] : result;
+  return result;
 }
 inline double largest_of(Octet a) {
   return -least_of(all(0) - a);

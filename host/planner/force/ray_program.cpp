@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numbers>
 
 namespace pinjaw::planner {
 
@@ -102,6 +103,12 @@ void put_plan_ray(int ray, int pin, const Vector3d& arm, const Vector3d& force, 
   program.rays_of_pin[pin] |= 1U << ray;
 }
 
+/// Shares spread evenly from -1 to 1, no two alike.
+double set_apart(double cost, int ray) {
+  const double share = 2 * std::fmod((ray + 1) / std::numbers::phi, 1.0) - 1;
+  return cost * (1 + kernel::kApart * share);
+}
+
 }  // namespace
 
 void fill_program(const Grasp& grasp, const GraspFrame& frame, double half_width, kernel::Program& program) {
@@ -119,7 +126,7 @@ void fill_program(const Grasp& grasp, const GraspFrame& frame, double half_width
       const int ray = 2 * static_cast<int>(i) + k;
       const Vector2d flat = edges[static_cast<std::size_t>(k)].head<2>();
       put_plan_ray(ray, pins[i], arm, {flat.x(), flat.y(), 0}, half_width, program);
-      program.cost[ray] = squeeze_share(grasp, contact, edges[static_cast<std::size_t>(k)]);
+      program.cost[ray] = set_apart(squeeze_share(grasp, contact, edges[static_cast<std::size_t>(k)]), ray);
       program.least_cost = std::min(program.least_cost, program.cost[ray]);
     }
   }
