@@ -1,7 +1,9 @@
 // Whole plans by the program itself: CPU time, peak memory, and the same with the exact cone.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "host/planner/features/features.hpp"
@@ -15,7 +17,7 @@
 namespace pinjaw::bench {
 namespace {
 
-constexpr int kRepeats = 5;
+constexpr int kPlans = 5;
 
 /// Median CPU time and largest memory of planning a shipped task.
 CommandCost planned(const std::string& task_name, const std::vector<std::string>& options) {
@@ -25,7 +27,7 @@ CommandCost planned(const std::string& task_name, const std::vector<std::string>
   command.insert(command.end(), options.begin(), options.end());
   CommandCost cost;
   std::vector<double> spent_s;
-  for (int i = 0; i < kRepeats; ++i) {
+  for (int i = 0; i < kPlans; ++i) {
     const CommandCost one = cost_of(command);
     if (one.exit_code != 0) throw std::runtime_error("pinjaw plan " + task_name + " failed");
     spent_s.push_back(one.cpu_s);

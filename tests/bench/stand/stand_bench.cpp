@@ -22,7 +22,7 @@ using geometry::Slab;
 using geometry::Sweep;
 using planner::PlanarFixture;
 
-constexpr std::size_t kScanned = 50;  // fixtures that the scan is asked of
+constexpr std::size_t kScanned = 1;  // fixtures that the scan is asked of: it takes a second a pin
 
 /// One part on its kit, with what phase 2 leaves to phases 3 and 4.
 struct Stand {
