@@ -125,20 +125,32 @@ bool ConeProgram::replace(State& state, const Ray& ray, const Vector6& column, d
 
 ConeProgram::End ConeProgram::run(State& state, const Vector6& b, Phase phase, double& gap) const {
   const double size = b.lpNorm<Eigen::Infinity>();
+  bool is_fresh = false;
   for (int pivots = 0; pivots < kMaxPivots; ++pivots) {
     if (pivots % kRefresh == kRefresh - 1) refresh(state, b);
     const Vector6 y = state.inverse.transpose() * state.cost;
     const Entering entering = price(y, phase);
     const double value = state.cost.dot(state.x);
+    if (!std::isfinite(value)) return End::Stalled;
     if (phase == Phase::Feasibility) {
       if (value <= kFeasible * size) return End::Settled;
       if (-entering.reduced_cost * size <= kUnresistable * y.dot(b)) return End::Infeasible;
     } else {
       gap = value - entering.shrink * y.dot(b);
-      if (gap <= kGap * std::max(1.0, value)) return End::Settled;
+      if (gap <= kGap * std::max(1.0, value)) {
+        // what rounding left out of balance changes the least squeeze by at most y times it
+        gap = std::max(0.0, gap) + y.lpNorm<1>() * (state.columns * state.x - b).lpNorm<Eigen::Infinity>();
+        if (gap <= kGap * std::max(1.0, value)) return End::Settled;
+        refresh(state, b);
+      }
     }
-    if (!replace(state, entering.ray, column_of(entering.ray), cost_of(entering.ray, phase)))
-      return End::Unbounded;
+    if (replace(state, entering.ray, column_of(entering.ray), cost_of(entering.ray, phase))) {
+      is_fresh = false;
+    } else {
+      if (is_fresh) return End::Stalled;  // nothing blocks: rounding, for every ray costs squeeze
+      refresh(state, b);
+      is_fresh = true;
+    }
   }
   return End::Stalled;
 }
@@ -164,10 +176,13 @@ SqueezeOutcome ConeProgram::solve(const std::array<double, kernel::kRows>& right
       state.cost[k] = cost_of(ray, Phase::Squeeze);
     }
   }
-  const End end = run(state, b, Phase::Squeeze, gap);
-  if (end == End::Unbounded) return Unbounded{};
+  run(state, b, Phase::Squeeze, gap);
+  const double value = state.cost.dot(state.x);
+  // past which rounding decides: no basis so flat can be told from none
+  const bool beyond = !(value * kUnresistable <= b.lpNorm<Eigen::Infinity>()) || !std::isfinite(gap);
+  if (beyond) return Unresistable{};
   keep_forces(state);
-  return Required{std::max(0.0, state.cost.dot(state.x)), std::max(0.0, gap)};
+  return Required{std::max(0.0, value), std::max(0.0, gap)};
 }
 
 }  // namespace pinjaw::planner

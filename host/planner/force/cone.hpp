@@ -28,8 +28,8 @@ class ConeProgram {
   /// closed form (the most negative reduced cost of a cone is u_n - mu |u_t|) and stops when the gap between
   /// its value and the dual bound, y scaled towards 0 until feasible, is at most 1e-9 max(1, F). `start` are
   /// the rays of a feasible basis, such as the pyramid's optimum, whose edges lie on the cone; empty: a first
-  /// phase finds one. Needs a grasp that does not jam. Stopped by its limit of steps it returns the forces it
-  /// has, with their gap, or Unresistable where it has none yet.
+  /// phase finds one. Needs a grasp that does not jam. Stopped by its limit of steps or by rounding it
+  /// returns the forces it has, with their gap, or Unresistable where it has none.
   SqueezeOutcome solve(const std::array<double, kernel::kRows>& b, const std::vector<Ray>& start);
 
  private:
@@ -52,7 +52,7 @@ class ConeProgram {
     Vector6 cost;
   };
 
-  enum class End { Settled, Unbounded, Infeasible, Stalled };
+  enum class End { Settled, Infeasible, Stalled };
   enum class Phase { Feasibility, Squeeze };
 
   struct Entering {

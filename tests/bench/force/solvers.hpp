@@ -2,8 +2,9 @@
 
 #include "tests/bench/force/cases.hpp"
 
-/// The squeeze program's peers. Each solves every load of a case and returns the sum of the forces, so that
-/// nothing is optimised away and answers can be compared.
+/// The squeeze program's peers, each with the options that suit it best of those tried. Each solves every
+/// load of a case and returns the sum of the forces, so that nothing is optimised away and answers can be
+/// compared.
 namespace pinjaw::bench {
 
 /// GLPK's dual simplex from the last load's basis, or its primal simplex from the slack basis.

@@ -67,6 +67,45 @@ TEST_P(SqueezeOnFamily, equals_quadruple_precision_to_1e_9) {
   expect_agreement({GetParam(), 20, 40, 1e-9}, in_quadruple_precision);
 }
 
+/// Where a general solver and ours differ, quadruple precision decides. Returns how often they did.
+int disputes_with(Referee peer, zoo::Family family) {
+  base::Random random(120 + static_cast<std::uint64_t>(family));
+  SqueezeSolver solver;
+  int disputes = 0;
+  for (int g = 0; g < 40; ++g) {
+    const Grasp grasp = zoo::random_grasp(family, random);
+    solver.take(grasp);
+    for (int l = 0; l < 10; ++l) {
+      const model::Wrench wrench = zoo::random_wrench(family, grasp, random);
+      const peers::Result mine = ours(solver, wrench);
+      const peers::Result theirs = peer(grasp, wrench);
+      const double size = std::max(1.0, std::abs(mine.value));
+      if (mine.status == theirs.status && std::abs(mine.value - theirs.value) <= 1e-7 * size) continue;
+      ++disputes;
+      const peers::Result decided = peers::quadruple(grasp, wrench);
+      EXPECT_EQ(mine.status, decided.status) << to_string(mine) << ", the peer " << to_string(theirs);
+      EXPECT_NEAR(mine.value, decided.value, 1e-9 * size) << "the peer " << to_string(theirs);
+    }
+  }
+  return disputes;
+}
+
+/// Families whose data lie below a general solver's own tolerances of 1e-9.
+bool is_extreme(zoo::Family family) {
+  return family == zoo::Family::LittleFriction || family == zoo::Family::HardlyAnyFriction ||
+         family == zoo::Family::NearCoincident;
+}
+
+TEST_P(SqueezeOnFamily, equals_glpk_or_is_upheld_against_it_by_quadruple_precision) {
+  const int disputes = disputes_with(peers::glpk, GetParam());
+  EXPECT_LE(disputes, is_extreme(GetParam()) ? 100 : 0);
+}
+
+TEST_P(SqueezeOnFamily, equals_clp_or_is_upheld_against_it_by_quadruple_precision) {
+  const int disputes = disputes_with(peers::clp, GetParam());
+  EXPECT_LE(disputes, is_extreme(GetParam()) ? 100 : 0);
+}
+
 INSTANTIATE_TEST_SUITE_P(Zoo, SqueezeOnFamily, testing::ValuesIn(zoo::all_families()),
                          [](const auto& family) { return zoo::name_of(family.param); });
 

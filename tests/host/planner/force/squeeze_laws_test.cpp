@@ -135,6 +135,7 @@ TEST(Cone, lies_between_the_pyramid_around_it_and_the_pyramid_inside) {
         const auto* required = std::get_if<Required>(&cone);
         if (required == nullptr) {
           EXPECT_TRUE(std::isinf(force_n(solver, wrench))) << zoo::name_of(family);
+          EXPECT_TRUE(std::holds_alternative<Unresistable>(cone)) << zoo::name_of(family);
           continue;
         }
         const double slack_n = 1e-8 * std::max(1.0, required->force_n);
@@ -212,6 +213,18 @@ TEST(Kernels, of_every_instruction_set_give_the_same_bits) {
   }
 }
 
+TEST(Kernels, end_with_the_one_that_solvers_use) {
+  int count = 0;
+  const kernel::Kernel* const* all = kernel::kernels(count);
+  EXPECT_STREQ(all[0]->name, "baseline");
+  EXPECT_EQ(all[count - 1], &kernel::best_kernel());
+#if defined(__x86_64__)
+  const bool has_avx2 = __builtin_cpu_supports("avx2") != 0;
+  const bool has_avx512 = has_avx2 && __builtin_cpu_supports("avx512f") != 0;
+  EXPECT_EQ(count, 1 + (has_avx2 ? 1 : 0) + (has_avx512 ? 1 : 0));
+#endif
+}
+
 TEST(Kernels, forget_and_go_on_when_their_memory_is_full) {
   base::Random random(10);
   const Grasp grasp = zoo::random_grasp(zoo::Family::FormClosed, random);
@@ -231,6 +244,41 @@ TEST(Kernels, forget_and_go_on_when_their_memory_is_full) {
     ASSERT_EQ(among != nullptr, std::isfinite(alone_n));
     if (among == nullptr) continue;
     EXPECT_NEAR(among->force_n, alone_n, 1e-9 * std::max(1.0, alone_n));
+  }
+}
+
+/// Everything that a solver says of a load, by both models, as bits.
+std::vector<double> all_said(SqueezeSolver& solver, const model::Wrench& wrench) {
+  std::vector<double> said;
+  for (const FrictionModel friction : {FrictionModel::Pyramid, FrictionModel::Cone}) {
+    const SqueezeOutcome outcome = solver.least_squeeze(wrench, friction);
+    said.push_back(static_cast<double>(outcome.index()));
+    if (const auto* required = std::get_if<Required>(&outcome)) {
+      said.push_back(required->force_n);
+      said.push_back(required->gap_n);
+    }
+    if (const auto forces_n = solver.balancing_forces_n(wrench, friction)) {
+      for (const Vector3d& force : *forces_n) said.insert(said.end(), force.begin(), force.end());
+    }
+  }
+  return said;
+}
+
+TEST(Squeeze, of_a_grasp_does_not_depend_on_the_grasps_before_it) {
+  base::Random random(14);
+  SqueezeSolver used;
+  std::vector<SqueezeOutcome> outcomes;
+  for (int round = 0; round < 6; ++round) {
+    for (const zoo::Family family : zoo::all_families()) {
+      const Grasp grasp = zoo::random_grasp(family, random);
+      std::vector<model::Wrench> wrenches;
+      for (int l = 0; l < 12; ++l) wrenches.push_back(zoo::random_wrench(family, grasp, random));
+      SqueezeSolver fresh(grasp);
+      used.take(grasp);
+      for (const model::Wrench& wrench : wrenches)
+        EXPECT_EQ(all_said(used, wrench), all_said(fresh, wrench)) << zoo::name_of(family);
+      used.least_squeeze_all(wrenches, outcomes);  // leave something behind
+    }
   }
 }
 
