@@ -33,6 +33,15 @@ base::Expected<Shape> prism_of(const model::Profile& profile);
 /// Several solids as one shape.
 Shape compound_of(const std::vector<NamedShape>& solids);
 
+struct ChosenSolids {
+  std::vector<NamedShape> all;     ///< of the file, in its order
+  std::vector<NamedShape> chosen;  ///< that make the part
+};
+
+/// The solids of a STEP file's text or of the profile, and those of the selection among them.
+base::Expected<ChosenSolids> chosen_solids(const model::PartSource& source, const std::string& bytes,
+                                           const Selection& selection);
+
 struct BrepMesh {
   geometry::TriangleMesh mesh;
   double deflection_mm = 0;  ///< chord error asked of the mesher

@@ -1,7 +1,5 @@
 #include "host/part/part.hpp"
 
-#include <algorithm>
-#include <cctype>
 #include <cmath>
 
 #include "host/base/files.hpp"
@@ -10,63 +8,13 @@
 #include "host/part/brep_packing.hpp"
 #include "host/part/cad_process.hpp"
 #include "host/part/placing.hpp"
+#include "host/part/selected.hpp"
 #include "host/part/stl_part.hpp"
 
 namespace pinjaw::part {
 namespace {
 
 constexpr double kKgPerMm3AtOneGPerCm3 = 1e-6;
-constexpr std::size_t kMostFileBytes = 512U << 20U;  // chosen: reading takes some twenty times as much memory
-
-std::string lower_case(std::string text) {
-  std::ranges::transform(text, text.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
-bool is_step(const std::filesystem::path& file) {
-  const std::string ending = lower_case(file.extension().string());
-  return ending == ".step" || ending == ".stp";
-}
-
-bool is_stl(const std::filesystem::path& file) {
-  return lower_case(file.extension().string()) == ".stl";
-}
-
-base::Expected<std::vector<NamedShape>> solids_of(const model::PartSource& source, const std::string& bytes) {
-  if (source.profile) {
-    return prism_of(*source.profile).map([&](const Shape& shape) {
-      return std::vector<NamedShape>{{source.profile->name, shape}};
-    });
-  }
-  if (!is_step(source.file)) {
-    return base::failure(source.file.string() +
-                         ": not a part file; expected .step, .stp, .stl or a profile in .yaml");
-  }
-  return read_step(bytes, source.file.string());
-}
-
-/// Of solids with names, those that make the part.
-template <class Named>
-base::Expected<std::vector<Named>> selected(const std::vector<Named>& solids, const Selection& selection,
-                                            const std::string& file) {
-  if (selection.base.empty()) return solids;
-  std::vector<Named> base;
-  std::vector<Named> rest;
-  std::string names;
-  for (const Named& solid : solids) {
-    const bool wanted = base.empty() && lower_case(solid.name) == lower_case(selection.base);
-    (wanted ? base : rest).push_back(solid);
-    names += (names.empty() ? "\"" : ", \"") + solid.name + "\"";
-  }
-  if (base.empty()) {
-    return base::failure(file + ": no solid is named \"" + selection.base + "\"; it holds " + names);
-  }
-  if (selection.rest && rest.empty()) {
-    return base::failure(file + ": holds nothing but \"" + selection.base + "\"");
-  }
-  return selection.rest ? rest : base;
-}
 
 /// CAD systems fill in product names of their own, so only a name that the caller asked for counts.
 std::string name_of(const model::PartSource& source, const Selection& selection) {
@@ -92,11 +40,9 @@ base::Expected<BrepValues> brep_values(const model::PartSource& source, const st
                                        const Selection& selection, const base::IsolatedStage& stage) {
   const std::string file = source.file.string();
   stage("reading its solids");
-  const auto solids = solids_of(source, bytes);
+  const auto solids = chosen_solids(source, bytes, selection);
   if (!solids) return tl::unexpected(solids.error());
-  const auto chosen = selected(*solids, selection, file);
-  if (!chosen) return tl::unexpected(chosen.error());
-  auto values = values_of(*solids, *chosen, source.up, stage);
+  auto values = values_of(solids->all, solids->chosen, source.up, stage);
   if (!values) return base::failure(file + ": " + values.error().message);
   return values;
 }
@@ -152,8 +98,7 @@ base::Expected<Part> read_part(const model::PartSource& source, const Selection&
   if (!(source.up.norm() > 0) || !source.up.allFinite()) return base::failure(file + ": up has no direction");
   const auto bytes = base::read_file(source.file, kMostFileBytes);
   if (!bytes) return base::failure(file + ": " + bytes.error().message);
-  const bool from_mesh = !source.profile && is_stl(source.file);
-  auto part = from_mesh ? read_mesh(source, *bytes, selection) : read_brep(source, *bytes, selection);
+  auto part = has_brep(source) ? read_brep(source, *bytes, selection) : read_mesh(source, *bytes, selection);
   if (!part) return part;
   part->file = source.file;
   part->mass_kg = mass_kg(source, part->volume_mm3);
@@ -162,9 +107,14 @@ base::Expected<Part> read_part(const model::PartSource& source, const Selection&
   return part;
 }
 
+Eigen::Matrix3d rotation_to(model::Side side) {
+  if (side == model::Side::Below) return Eigen::Matrix3d::Identity();
+  return Vector3d(-1, 1, -1).asDiagonal();
+}
+
 Part turned(const Part& part, model::Side side) {
   if (side == model::Side::Below) return part;
-  const Eigen::Matrix3d rotation = Vector3d(-1, 1, -1).asDiagonal();
+  const Eigen::Matrix3d rotation = rotation_to(side);
   Part result = part;
   result.surface = geometry::Surface(rotated(part.surface.mesh(), rotation));
   for (EdgeCurve& edge : result.edges) edge.curve = rotated(edge.curve, rotation);

@@ -93,8 +93,14 @@ inline constexpr int kMostTriangles = 600'000;
 /// A sentence where the file is missing, is not STEP, is broken or holds no solid.
 base::Expected<Part> read_part(const model::PartSource& source, const Selection& selection = {});
 
+/// Whether a source has exact faces: a STEP file or a profile, but not an STL mesh.
+bool has_brep(const model::PartSource& source);
+
 /// The part as its gripper sees it: itself from below; from above turned by pi about y (DESIGN 2, BB 3.6).
 Part turned(const Part& part, model::Side side);
+
+/// The rotation from the part frame to that of a gripper on this side.
+Eigen::Matrix3d rotation_to(model::Side side);
 
 /// A curve of the plan view seen from behind: mirrored across the y axis (`axis` 0: x changes sign) or the x
 /// axis (1: y changes sign). Segments swap their ends, so material on the left stays on the left.
