@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -153,6 +154,48 @@ std::string robust_text(const planner::Plan& plan) {
                         bound, robust.location_error_deg);
   }
   return text;
+}
+
+std::string exact_text(const planner::Plan& plan) {
+  std::string text;
+  for (const model::Design& design : plan.designs) {
+    if (!design.exact) continue;
+    text +=
+        fmt::format("{:<10} {:>10.4f} {:>10.4f} {:>9.3f}\n", design.id, design.exact->largest_difference_mm,
+                    design.exact->contact_gap_mm, design.exact->least_clearance_mm);
+  }
+  if (text.empty()) return text;
+  return fmt::format("\non the exact faces of the part, in mm:\n{:<10} {:>10} {:>10} {:>9}\n", "design",
+                     "difference", "gap", "clearance") +
+         text;
+}
+
+std::string exact_text(const planner::ExactReport& report, std::size_t asked) {
+  std::string text;
+  for (const std::string& file : report.without_faces) {
+    text += fmt::format("not re-checked on exact faces: {} is a mesh and has none\n", file);
+  }
+  if (report.designs.size() < asked) return text;
+  model::Exact most{.least_clearance_mm = std::numeric_limits<double>::infinity()};
+  std::size_t differ = 0;
+  for (const planner::ExactDesign& design : report.designs) {
+    const model::Exact& one = design.summary;
+    most.largest_difference_mm = std::max(most.largest_difference_mm, one.largest_difference_mm);
+    most.contact_gap_mm = std::max(most.contact_gap_mm, one.contact_gap_mm);
+    most.least_clearance_mm = std::min(most.least_clearance_mm, one.least_clearance_mm);
+    for (const planner::ExactFigure& figure : design.figures) {
+      if (figure.difference_mm() < kToldDifference_mm) continue;
+      ++differ;
+      text += fmt::format("{}: {}: mesh {:.4f}, exact {:.4f}: {:.4f} mm apart\n", figure.subject, figure.what,
+                          figure.mesh_mm, figure.brep_mm, figure.difference_mm());
+    }
+  }
+  return text + fmt::format(
+                    "{} {} re-checked on the exact B-rep: largest difference {:.4f} mm, {} {} of {} mm or "
+                    "more; contacts within {:.4f} mm, least clearance {:.3f} mm\n",
+                    asked, asked == 1 ? "design" : "designs", most.largest_difference_mm, differ,
+                    differ == 1 ? "difference" : "differences", kToldDifference_mm, most.contact_gap_mm,
+                    most.least_clearance_mm);
 }
 
 }  // namespace pinjaw::app

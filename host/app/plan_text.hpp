@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "host/planner/plan/exact.hpp"
 #include "host/planner/plan/plan.hpp"
 
 /// What people read of a plan on a terminal.
@@ -22,5 +23,15 @@ std::string certified_text(const planner::Plan& plan);
 
 /// How the designs that tell it fare over the ranges; empty where none does.
 std::string robust_text(const planner::Plan& plan);
+
+/// What the designs that tell it come to on the part's exact faces; empty where none does.
+std::string exact_text(const planner::Plan& plan);
+
+/// Each figure that differs from the triangles' by enough to be told, and a line about them all. `asked` is
+/// how many designs were to be re-checked.
+std::string exact_text(const planner::ExactReport& report, std::size_t asked);
+
+/// Least difference between triangles and exact faces that is told. Chosen: a quarter of the chord error.
+inline constexpr double kToldDifference_mm = 1e-3;
 
 }  // namespace pinjaw::app

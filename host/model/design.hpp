@@ -55,6 +55,13 @@ struct Certified {
   bool curved = false;                               ///< whether it hits a curved face
 };
 
+/// What a design comes to on the part's exact faces, of which phases 3 and 4 know the triangles. In mm.
+struct Exact {
+  double largest_difference_mm = 0;  ///< between triangles and faces, over all heights and contacts asked
+  double contact_gap_mm = 0;         ///< of the pin that is farthest from just touching, to either side
+  double least_clearance_mm = 0;     ///< of the jaws, and of pins from obstacles, on the whole way
+};
+
 /// A planar fixture made 3-d: one pin layout that holds the part.
 struct Design {
   std::string id;
@@ -68,6 +75,7 @@ struct Design {
   std::vector<Alternative> alternatives;
   std::optional<Certified> certified;
   std::optional<Robust> robust;  ///< where it was asked for
+  std::optional<Exact> exact;    ///< where it was asked for
 };
 
 }  // namespace pinjaw::model

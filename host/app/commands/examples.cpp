@@ -27,7 +27,9 @@ constexpr std::array kExamples = {
     Example{"why",
             "  pinjaw why configs/tasks/valve-pedestal.yaml\n"
             "  pinjaw why configs/tasks/valve-pedestal.yaml --design best"},
-    Example{"check", "  pinjaw check plan.json\n  pinjaw check plan.json --design best --all"},
+    Example{"check",
+            "  pinjaw check plan.json\n  pinjaw check plan.json --design best --all\n  pinjaw check "
+            "plan.json --exact all"},
     Example{"cell", "  pinjaw cell configs/cells/acc.yaml -o cell.json"},
     Example{"sheet", "  pinjaw sheet plan.json --design best -o sheet.pdf"},
     Example{"kit", "  pinjaw kit list\n  pinjaw kit check configs/kits/*.yaml"},

@@ -6,6 +6,7 @@
 #include "host/app/commands/commands.hpp"
 #include "host/app/commands/planning.hpp"
 #include "host/app/plan_text.hpp"
+#include "host/planner/plan/exact.hpp"
 #include "host/planner/plan/plan_json.hpp"
 #include "host/planner/plan/rank.hpp"
 
@@ -18,15 +19,18 @@ struct PlanOptions {
   std::string output;
   std::optional<int> certify;
   std::optional<int> robust;
+  std::optional<int> exact;
   planner::Rank rank = planner::Rank::Nominal;
   PlanningOptions planning;
 };
 
-constexpr int kLookedInto = 10;  // where --certify or --robust has no number: as many as the summary shows
+constexpr int kLookedInto =
+    10;  // where --certify, --robust or --exact has no number: as many as the summary shows
 constexpr int kMostLookedInto = 1000000;
 
-/// The plan with how robust its best designs are, where that was asked for.
-std::optional<planner::Plan> plan_robustly(Context& context, const PlanOptions& options) {
+/// The plan with how robust its best designs are and what they come to on exact faces, where that was asked
+/// for.
+std::optional<planner::Plan> plan_as_asked(Context& context, const PlanOptions& options) {
   auto job = read_job(context, options.task, options.planning);
   if (!job) return std::nullopt;
   const bool by_worst = options.rank == planner::Rank::Robust;
@@ -37,17 +41,24 @@ std::optional<planner::Plan> plan_robustly(Context& context, const PlanOptions& 
   if (!plan) return std::nullopt;
   if (options.robust || by_worst)
     planner::tell_robustness(*plan, job->scene, job->task.ranges, robust, context.progress_sink());
+  if (options.exact) {
+    const auto told = planner::tell_exactly(*plan, job->scene, static_cast<std::size_t>(*options.exact));
+    if (!told) {
+      context.fail(ExitCode::BadFile, options.task + ": " + told.error().message);
+      return std::nullopt;
+    }
+  }
   return plan;
 }
 
 void run_plan(Context& context, const PlanOptions& options) {
   if (!context.can_write(options.output, options.task)) return;
-  const auto plan = plan_robustly(context, options);
+  const auto plan = plan_as_asked(context, options);
   if (!plan) return;
   constexpr std::size_t kShown = 10;
   const std::string summary =
       funnel_text(plan->funnel) + "\n" + designs_text(*plan, kShown) + certified_text(*plan) +
-      robust_text(*plan) +
+      robust_text(*plan) + exact_text(*plan) +
       "\nThe squeeze is what can balance the load, the sum of both jaws; it is not a guarantee.";
   if (!context.deliver(options.output, planner::to_json(*plan), summary)) return;
   if (plan->designs.empty()) context.exit_code = ExitCode::No;
@@ -73,6 +84,8 @@ void add_plan(CLI::App& app, Context& context) {
             "for the best N designs (10), find the worst spray anywhere a jet reaches the part");
   add_count("--robust", options->robust,
             "how the N best designs (10) fare over the task's ranges of friction, pins, part and air");
+  add_count("--exact", options->exact,
+            "what the N best designs (10) come to on the exact faces of the part, not on its triangles");
   add_choice<planner::Rank>(
       *command, "--rank", options->rank,
       {{"nominal", planner::Rank::Nominal}, {"robust", planner::Rank::Robust}},

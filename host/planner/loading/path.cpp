@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 
 #include "host/model/tolerance.hpp"
+#include "host/planner/loading/covered.hpp"
 
 namespace pinjaw::planner {
 namespace {
 
-using geometry::Rectangle;
 using geometry::Slab;
 using geometry::Surface;
 using geometry::Sweep;
@@ -17,13 +16,6 @@ using geometry::Vector2d;
 using model::JawSide;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-/// What lies on a plate touches it and does not meet it.
-constexpr double kResting_mm = 1e-6;
-
-double sign_of_outwards(JawSide jaw) {
-  return jaw == JawSide::Left ? -1 : 1;
-}
 
 }  // namespace
 
@@ -87,27 +79,16 @@ bool Path::pins_meet_others(double opening_mm) const {
   return false;
 }
 
-Rectangle Path::covered(const model::JawBody& solid, const PlacedFixture& placed, JawSide jaw,
-                        const geometry::Interval& opening_mm) const {
-  const double inner_mm = placed.jaw_separation_mm / 2 + opening_mm.lo + solid.x_mm.lo;
-  const double outer_mm = placed.jaw_separation_mm / 2 + opening_mm.hi + solid.x_mm.hi;
-  const geometry::Pose2 X_PG = placed.part_pose.inverse();
-  const double clearance_mm = kit_.pins.clearance_mm;
-  return {.center_mm = X_PG * Vector2d(sign_of_outwards(jaw) * (inner_mm + outer_mm) / 2,
-                                       std::midpoint(solid.y_mm.lo, solid.y_mm.hi)),
-          .direction = X_PG.turned(Vector2d::UnitX()),
-          .half_mm = {(outer_mm - inner_mm) / 2 + clearance_mm, solid.y_mm.length() / 2 + clearance_mm}};
-}
-
 bool Path::solid_meets_anything(const model::JawBody& solid, const PlacedFixture& placed, JawSide jaw,
                                 double opening_mm) const {
-  const double top_mm = surroundings_.plate_top_mm + solid.z_mm.hi - kResting_mm;
-  const Slab standing{surroundings_.plate_top_mm + solid.z_mm.lo, top_mm};
-  const Slab coming{.hi_mm = top_mm};
+  const Slab standing = heights_of(solid, surroundings_.plate_top_mm);
+  const Slab coming{.hi_mm = standing.hi_mm};
+  const ClosedJaw closed{jaw, placed.jaw_separation_mm, placed.part_pose};
+  const double clearance_mm = kit_.pins.clearance_mm;
   const auto in_the_way = [&](const Surface& surface) {
-    if (surface.z_range_mm().lo > top_mm) return false;
-    return surface.meets(covered(solid, placed, jaw, {0, opening_mm}), standing) ||
-           surface.meets(covered(solid, placed, jaw, {opening_mm, opening_mm}), coming);
+    if (surface.z_range_mm().lo > standing.hi_mm) return false;
+    return surface.meets(covered(solid, closed, {0, opening_mm}, clearance_mm), standing) ||
+           surface.meets(covered(solid, closed, {opening_mm, opening_mm}, clearance_mm), coming);
   };
   return in_the_way(*surroundings_.part) ||
          std::any_of(surroundings_.others.begin(), surroundings_.others.end(), in_the_way);

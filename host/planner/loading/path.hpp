@@ -32,9 +32,6 @@ class Path {
   [[nodiscard]] bool jaws_meet_anything(const PlacedFixture& placed, double opening_mm) const;
   [[nodiscard]] bool solid_meets_anything(const model::JawBody& solid, const PlacedFixture& placed,
                                           model::JawSide jaw, double opening_mm) const;
-  /// What the solid of a jaw covers in plan while the jaw moves over `opening_mm`, grown by the clearance.
-  [[nodiscard]] geometry::Rectangle covered(const model::JawBody& solid, const PlacedFixture& placed,
-                                            model::JawSide jaw, const geometry::Interval& opening_mm) const;
 
   const model::Kit& kit_;
   const Surroundings& surroundings_;

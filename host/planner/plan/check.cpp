@@ -15,6 +15,7 @@
 #include "host/planner/plan/check_certified.hpp"
 #include "host/planner/plan/check_robust.hpp"
 #include "host/planner/plan/check_tolerances.hpp"
+#include "host/planner/plan/pin_places.hpp"
 
 namespace pinjaw::planner {
 
@@ -45,18 +46,6 @@ class Report {
   std::string subject_;
   std::vector<Claim> claims_;
 };
-
-std::string name_of(const model::Hole& hole) {
-  return fmt::format("{}-C{}-R{}", hole.jaw == model::JawSide::Left ? 'L' : 'R', hole.column, hole.row);
-}
-
-Vector2d foot_in_part_mm(const model::Design& design, const model::PinDesign& pin) {
-  return design.part_pose.inverse() * pin.contact_mm;
-}
-
-Vector2d normal_in_part(const model::Design& design, const model::PinDesign& pin) {
-  return design.part_pose.inverse().turned(pin.normal);
-}
 
 void check_holes(const Plan& plan, const model::Design& design, Report& report) {
   const model::Kit& kit = plan.kit;

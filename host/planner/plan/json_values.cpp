@@ -1,5 +1,6 @@
 #include "host/planner/plan/json_values.hpp"
 
+#include <cmath>
 #include <limits>
 
 #include "host/config/fields.hpp"
@@ -134,6 +135,25 @@ ordered_json kit_json(const model::Kit& kit) {
             {"stable_ms", kit.grip.stable_ms}}}};
 }
 
+/// Without the difference where it is endless: the one found a surface where the other has none.
+ordered_json exact_json(const model::Exact& exact) {
+  ordered_json json;
+  if (std::isfinite(exact.largest_difference_mm)) json["largest_difference_mm"] = exact.largest_difference_mm;
+  json["contact_gap_mm"] = exact.contact_gap_mm;
+  json["least_clearance_mm"] = exact.least_clearance_mm;
+  return json;
+}
+
+model::Exact read_exact(const JsonField& field) {
+  model::Exact exact;
+  exact.largest_difference_mm = field.has("largest_difference_mm")
+                                    ? field.at("largest_difference_mm").number(config::length_at_least_0())
+                                    : std::numeric_limits<double>::infinity();
+  exact.contact_gap_mm = field.at("contact_gap_mm").number(config::length_at_least_0());
+  exact.least_clearance_mm = field.at("least_clearance_mm").number(config::coordinate());
+  return exact;
+}
+
 ordered_json design_json(const model::Design& design) {
   ordered_json pins = ordered_json::array();
   for (const model::PinDesign& pin : design.pins) pins.push_back(pin_json(pin));
@@ -160,6 +180,7 @@ ordered_json design_json(const model::Design& design) {
                        {"other_column_shifts", alternatives}};
   if (design.certified) json["certified"] = certified_json(*design.certified);
   if (design.robust) json["robust"] = robust_json(*design.robust);
+  if (design.exact) json["exact"] = exact_json(*design.exact);
   return json;
 }
 
@@ -261,6 +282,7 @@ model::Design read_design(const JsonField& field) {
   }
   if (field.has("certified")) design.certified = read_certified(field.at("certified"));
   if (field.has("robust")) design.robust = read_robust(field.at("robust"));
+  if (field.has("exact")) design.exact = read_exact(field.at("exact"));
   return design;
 }
 

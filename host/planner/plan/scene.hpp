@@ -5,6 +5,7 @@
 #include "host/base/expected.hpp"
 #include "host/geometry/surface.hpp"
 #include "host/model/task.hpp"
+#include "host/part/exact.hpp"
 #include "host/part/part.hpp"
 
 namespace pinjaw::planner {
@@ -15,6 +16,8 @@ struct Scene {
   part::Part turned;                         ///< as its gripper sees it
   std::vector<geometry::Surface> attached;   ///< turned; solids beside the base part
   std::vector<geometry::Surface> obstacles;  ///< turned
+  /// What all these were made of: the part, then what is attached, then the obstacles. Poses turned, too.
+  std::vector<part::ExactBody> bodies{};
 };
 
 /// Reads the part, what is attached to it and the obstacles of a task. Attached solids that do not stand with
