@@ -207,25 +207,33 @@ double ExactFaces::tolerance_mm() const {
 }
 
 double ExactFaces::distance_mm(const Column& asked) const {
-  const Column column{asked.region, held_->cut(asked.slab)};
-  const double apart_mm = held_->distance_mm(column);
-  if (apart_mm > kMeets_mm) return held_->holds(column) ? -apart_mm : apart_mm;
+  const auto by = [&](double shrunk_mm) {
+    const Column column = shrunk(asked, shrunk_mm);
+    return Column{column.region, held_->cut(column.slab)};
+  };
+  const auto meets = [&](double shrunk_mm) {
+    const Column column = by(shrunk_mm);
+    return held_->meets(column) || held_->holds(column);
+  };
+  const Column whole = by(0);
+  const double apart_mm = held_->distance_mm(whole);
+  if (apart_mm > kMeets_mm) return held_->holds(whole) ? -apart_mm : apart_mm;
   const double most_mm =
-      std::min(half_width_mm(column), (column.slab.hi_mm - column.slab.lo_mm) / 2) - kPoint_mm;
+      std::min(half_width_mm(asked), (asked.slab.hi_mm - asked.slab.lo_mm) / 2) - kPoint_mm;
   double meets_mm = 0;
   double clear_mm = kHeightStep_mm;
-  while (clear_mm < most_mm && held_->meets(shrunk(column, clear_mm))) {
+  while (clear_mm < most_mm && meets(clear_mm)) {
     meets_mm = clear_mm;
     clear_mm *= kStepGrowth;
   }
   if (meets_mm == 0) return 0;
   if (clear_mm >= most_mm) {
-    if (held_->meets(shrunk(column, most_mm))) return -most_mm;
+    if (meets(most_mm)) return -most_mm;
     clear_mm = most_mm;
   }
   while (clear_mm - meets_mm > kHeightStep_mm) {
     const double middle_mm = std::midpoint(meets_mm, clear_mm);
-    (held_->meets(shrunk(column, middle_mm)) ? meets_mm : clear_mm) = middle_mm;
+    (meets(middle_mm) ? meets_mm : clear_mm) = middle_mm;
   }
   return -clear_mm;
 }

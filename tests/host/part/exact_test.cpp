@@ -72,6 +72,8 @@ TEST(Exact, what_meets_a_block_is_told_by_how_much_it_must_shrink) {
   EXPECT_NEAR(answer({block()}, ExactDistance{0, disc(20, 10, 2, {.hi_mm = 0.3})}), -0.3, 2 * kHeightStep_mm)
       << "from below, its top alone is in it";
   EXPECT_NEAR(answer({block()}, ExactDistance{0, disc(20, 10, 2)}), -2, 1e-3) << "no thinner column is clear";
+  EXPECT_NEAR(answer({block()}, ExactDistance{0, disc(20, 10, 2, {.lo_mm = -3, .hi_mm = 7})}), -2, 1e-3)
+      << "shrunk until it lies in the material it is not clear of it";
   EXPECT_EQ(answer({block()}, ExactDistance{0, disc(-2, 10, 2)}), 0) << "a touch";
   EXPECT_EQ(answer({block()}, ExactDistance{0, disc(20, 10, 0)}), 0) << "a line";
 }
