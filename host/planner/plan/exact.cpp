@@ -23,10 +23,10 @@ using geometry::Vector2d;
 using model::kEps_mm;
 
 constexpr double kStatedTol_mm = 2 * part::kHeightStep_mm;  // chosen: the same search from another guess
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kEndless = std::numeric_limits<double>::infinity();
 constexpr const char* kClosing = "while it closes (exact faces)";
 constexpr const char* kComing = "while it comes along z, open (exact faces)";
-constexpr std::size_t kPart = 0;  ///< place of the part among the scene's bodies
+constexpr std::size_t kPartBody = 0;  ///< place of the part among the scene's bodies
 
 Sweep disc(const Vector2d& center_mm, double radius_mm) {
   return {center_mm, center_mm, radius_mm};
@@ -40,7 +40,7 @@ class Questions {
     return all_.size() - 1;
   }
   std::size_t height(part::Column column, part::End end, double guess_mm) {
-    all_.emplace_back(part::ExactHeight{kPart, std::move(column), end, guess_mm});
+    all_.emplace_back(part::ExactHeight{kPartBody, std::move(column), end, guess_mm});
     return all_.size() - 1;
   }
   [[nodiscard]] const std::vector<part::ExactQuestion>& all() const { return all_; }
@@ -95,7 +95,7 @@ class Interviewer {
       asked.pins.push_back(about_pin(design, pin, questions));
       for (const std::size_t body : bodies) about_way(design, pin, body, asked.ways, questions);
     }
-    about_jaws(design, kPart, asked.ways, questions);
+    about_jaws(design, kPartBody, asked.ways, questions);
     for (const std::size_t body : bodies) about_jaws(design, body, asked.ways, questions);
     return asked;
   }
@@ -127,15 +127,16 @@ class Interviewer {
     const Slab under{.hi_mm = asked.mesh_ceiling_mm - kEps_mm};
     asked.mesh_reach_mm = mesh.highest_z_mm(thick, under);
     const auto edge = mesh.lowest_above(inside.from_mm);
-    asked.mesh_edge_mm = edge ? edge->point_mm.z() : kInfinity;
+    asked.mesh_edge_mm = edge ? edge->point_mm.z() : kEndless;
 
-    asked.side = questions.distance(kPart, {thin, {.hi_mm = side_top_mm}});
-    asked.way = questions.distance(kPart, {way, {.hi_mm = plan_.loading_2d ? kInfinity : side_top_mm}});
-    asked.contact = questions.distance(kPart, {disc(foot_mm, 0), {pin.contact_z_mm.lo, pin.contact_z_mm.hi}});
-    asked.topped = questions.distance(kPart, {thin, {.hi_mm = top_mm + pins_.clearance_mm}});
-    asked.engaged = questions.distance(kPart, {inside, {.hi_mm = top_mm - pins_.min_engagement_mm}});
+    asked.side = questions.distance(kPartBody, {thin, {.hi_mm = side_top_mm}});
+    asked.way = questions.distance(kPartBody, {way, {.hi_mm = plan_.loading_2d ? kEndless : side_top_mm}});
+    asked.contact =
+        questions.distance(kPartBody, {disc(foot_mm, 0), {pin.contact_z_mm.lo, pin.contact_z_mm.hi}});
+    asked.topped = questions.distance(kPartBody, {thin, {.hi_mm = top_mm + pins_.clearance_mm}});
+    asked.engaged = questions.distance(kPartBody, {inside, {.hi_mm = top_mm - pins_.min_engagement_mm}});
     const double protruding_mm = std::min(top_mm - pins_.protrusion_mm, under.hi_mm);
-    asked.protruded = questions.distance(kPart, {thick, {protruding_mm, under.hi_mm}});
+    asked.protruded = questions.distance(kPartBody, {thick, {protruding_mm, under.hi_mm}});
     asked.ceiling = questions.height({thin, {}}, part::End::Lowest, asked.mesh_ceiling_mm);
     asked.reach = questions.height({thick, under}, part::End::Highest, asked.mesh_reach_mm);
     asked.edge = questions.height({inside, {}}, part::End::Lowest, asked.mesh_edge_mm);
@@ -157,7 +158,7 @@ class Interviewer {
                       covers(0), covers(clearance_mm)});
     };
     add(closed_mm, plate_top_mm_, kClosing);
-    add(open, -kInfinity, kComing);
+    add(open, -kEndless, kComing);
   }
 
   void about_jaws(const model::Design& design, std::size_t body, std::vector<Way>& ways,
@@ -183,7 +184,7 @@ class Interviewer {
   }
 
   [[nodiscard]] std::string name_of_body(std::size_t body) const {
-    return body == kPart ? "the part" : scene_.bodies[body].source.file.filename().string();
+    return body == kPartBody ? "the part" : scene_.bodies[body].source.file.filename().string();
   }
 
   const Plan& plan_;
@@ -206,7 +207,7 @@ class Reader {
       : design_(design), pins_(pins), mm_(mm), slack_(slack) {}
 
   ExactDesign read(const DesignAsked& asked) {
-    result_.summary.least_clearance_mm = kInfinity;
+    result_.summary.least_clearance_mm = kEndless;
     for (std::size_t i = 0; i < asked.pins.size(); ++i) read_pin(design_.pins[i], asked.pins[i]);
     for (const Way& way : asked.ways) read_way(way);
     for (const ExactFigure& figure : result_.figures)
@@ -287,11 +288,11 @@ base::Expected<ExactReport> recheck_exactly(const Plan& plan, const Scene& scene
   for (std::size_t body = 0; body < bodies.size(); ++body) {
     if (!part::has_brep(bodies[body].source)) {
       report.without_faces.push_back(bodies[body].source.file.string());
-    } else if (body != kPart) {
+    } else if (body != kPartBody) {
       others.push_back(body);
     }
   }
-  if (bodies.empty() || !part::has_brep(bodies[kPart].source)) return report;
+  if (bodies.empty() || !part::has_brep(bodies[kPartBody].source)) return report;
 
   Questions questions;
   std::vector<DesignAsked> asked;

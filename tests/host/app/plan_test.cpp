@@ -201,6 +201,47 @@ TEST_F(Check, names_the_claim_that_was_tampered_with) {
   EXPECT_FALSE(json::parse(document.out).at("claims").empty());
 }
 
+TEST_F(Check, asks_the_exact_faces_about_the_best_designs_unless_told_not_to) {
+  EXPECT_THAT(bench_.pinjaw("check plan.json").out, HasSubstr("3 designs re-checked on the exact B-rep"));
+  EXPECT_THAT(bench_.pinjaw("check plan.json --exact 1").out,
+              HasSubstr("1 design re-checked on the exact B-rep"));
+  EXPECT_THAT(bench_.pinjaw("check plan.json --exact none").out, HasSubstr("no design re-checked"));
+  const Ran document = bench_.pinjaw("check plan.json --exact 2 --json");
+  EXPECT_EQ(json::parse(document.out).at("exact").at("designs"), 2);
+  const Ran wrong = bench_.pinjaw("check plan.json --exact some");
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_THAT(wrong.err,
+              HasSubstr("--exact: expected a whole number from 0 to 1000000, all or none, found some"));
+}
+
+TEST_F(Check, exits_1_where_a_pin_does_not_stand_where_the_exact_faces_let_it) {
+  json plan = json::parse(bench_.read("plan.json"));
+  json& pose = plan["designs"][0]["part_pose"];
+  pose["x_mm"] = pose["x_mm"].get<double>() + 0.1;
+  bench_.write("plan.json", plan.dump());
+  const Ran ran = bench_.pinjaw("check plan.json");
+  EXPECT_EQ(ran.exit_code, 1);
+  EXPECT_THAT(ran.out, HasSubstr("does not cut the part (exact faces): it does by 0."));
+  EXPECT_THAT(ran.out, HasSubstr("gap to the part: mesh 0.0000, exact "));
+}
+
+TEST(Plan, tells_what_the_best_designs_come_to_on_exact_faces_and_check_agrees) {
+  const Bench bench;
+  EXPECT_EQ(bench.pinjaw("plan " + kTask + " --exact 2 --top 3 -o plan.json").exit_code, 0);
+  json plan = json::parse(bench.read("plan.json"));
+  EXPECT_LT(plan.at("designs")[1].at("exact").at("contact_gap_mm"), 1e-3);
+  EXPECT_FALSE(plan.at("designs")[2].contains("exact"));
+  EXPECT_EQ(bench.pinjaw("check plan.json").exit_code, 0);
+  plan["designs"][1]["exact"]["least_clearance_mm"] = 7;
+  bench.write("lie.json", plan.dump());
+  const Ran lie = bench.pinjaw("check lie.json --exact 1");
+  EXPECT_EQ(lie.exit_code, 1) << "a design that tells it is asked, too";
+  EXPECT_THAT(lie.out, HasSubstr("least clearance on the exact faces: stated 7"));
+  const Ran mesh = bench.pinjaw("plan " + shipped("configs/tasks/l-bracket-stl.yaml") + " --exact -o x.json");
+  EXPECT_EQ(mesh.exit_code, 3);
+  EXPECT_THAT(mesh.err, HasSubstr("l_bracket.stl is a mesh without any"));
+}
+
 TEST_F(Check, of_a_design_that_is_not_there_says_so) {
   const Ran ran = bench_.pinjaw("check plan.json --design nosuch");
   EXPECT_EQ(ran.exit_code, 1);
