@@ -60,7 +60,7 @@ base::Expected<std::vector<double>> answers(const std::vector<ExactBody>& bodies
   return mm;
 }
 
-std::string packed(const std::vector<double>& numbers) {
+std::string bytes_of(const std::vector<double>& numbers) {
   std::string bytes(numbers.size() * sizeof(double), '\0');
   std::memcpy(bytes.data(), numbers.data(), bytes.size());
   return bytes;
@@ -72,8 +72,9 @@ base::Expected<ExactAnswers> ask_exactly(const std::vector<ExactBody>& bodies,
                                          const std::vector<ExactQuestion>& questions) {
   if (bodies.empty()) return ExactAnswers{};
   const std::string file = bodies.front().source.file.string();
-  const auto bytes = in_cad_process(
-      file, [&](const base::IsolatedStage& stage) { return answers(bodies, questions, stage).map(packed); });
+  const auto bytes = in_cad_process(file, [&](const base::IsolatedStage& stage) {
+    return answers(bodies, questions, stage).map(bytes_of);
+  });
   if (!bytes) return tl::unexpected(bytes.error());
   std::vector<double> mm(questions.size() + bodies.size());
   const bool whole = bytes->size() == mm.size() * sizeof(double);

@@ -36,9 +36,9 @@ TEST(CurveFit, recognises_a_line_through_its_samples) {
   EXPECT_EQ(line.b_mm, samples.back());
 }
 
-class Sweep : public testing::TestWithParam<double> {};
+class ArcSweep : public testing::TestWithParam<double> {};
 
-TEST_P(Sweep, recognises_an_arc_with_its_ends_centre_and_radius) {
+TEST_P(ArcSweep, recognises_an_arc_with_its_ends_centre_and_radius) {
   const auto samples = on_circle(12, GetParam());
   const auto curve = recognised(samples, kToleranceMm);
   ASSERT_TRUE(curve);
@@ -50,7 +50,7 @@ TEST_P(Sweep, recognises_an_arc_with_its_ends_centre_and_radius) {
   EXPECT_LT((at(arc, arc.from_rad + arc.sweep_rad) - samples.back()).norm(), 1e-9);
 }
 
-INSTANTIATE_TEST_SUITE_P(Arcs, Sweep, testing::Values(0.2, 1.0, 3.0, 3.3, 6.0, 2 * std::numbers::pi));
+INSTANTIATE_TEST_SUITE_P(Arcs, ArcSweep, testing::Values(0.2, 1.0, 3.0, 3.3, 6.0, 2 * std::numbers::pi));
 
 TEST(CurveFit, recognises_nothing_beyond_its_tolerance) {
   const auto rippled = recognised(on_circle(12, 2, 0.8e-3), kToleranceMm);
