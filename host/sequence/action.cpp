@@ -1,6 +1,7 @@
 #include "host/sequence/action.hpp"
 
 #include <limits>
+#include <memory>
 #include <utility>
 
 namespace pinjaw::sequence {
@@ -78,6 +79,34 @@ Action pause(double seconds) {
           .ends_well_at_limit = true,
           .begin = still,
           .poll = still};
+}
+
+Action rearming(Action action, Action arm, std::uint8_t node) {
+  constexpr int kTries = 3;
+  struct Course {
+    int tries = 0;
+    bool arms = false;
+  };
+  const auto course = std::make_shared<Course>();
+  const auto poll = [course, node, acts = action, arms = std::move(arm)](Stage& stage) -> ActionState {
+    if (course->arms) {
+      const ActionState state = arms.poll(stage);
+      if (!std::holds_alternative<Finished>(state)) return state;
+      course->arms = false;
+      return acts.begin(stage);
+    }
+    ActionState state = acts.poll(stage);
+    const bool session_over = stage.client.outcome(node).reason == wire::Reason::NotArmed;
+    if (!std::holds_alternative<Failed>(state) || !session_over || ++course->tries >= kTries) return state;
+    course->arms = true;
+    return arms.begin(stage);
+  };
+  action.begin = [course, begin = std::move(action.begin)](Stage& stage) {
+    *course = {};
+    return begin(stage);
+  };
+  action.poll = poll;
+  return action;
 }
 
 Action attempt(Action action) {

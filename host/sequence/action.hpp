@@ -57,6 +57,11 @@ Action until(std::string otherwise, std::int64_t limit_us,
 /// Lets time pass.
 Action pause(double seconds);
 
+/// `action` on `node`, begun again after `arm` where the node refuses it because its session is over: a
+/// silence of this host has ended it, as on a busy machine, and the node has done nothing. Three times at
+/// most.
+Action rearming(Action action, Action arm, std::uint8_t node);
+
 /// `action`, but its failure does not matter: for clearing up.
 Action attempt(Action action);
 

@@ -61,10 +61,10 @@ class Writer {
           {member.node(), member.design().jaw_separation_mm, member.needed_n(weight(carried_))});
     }
     const std::uint8_t node = holder_->node();
-    script_.actions = {
-        tell(bench::Enable{node, true}), tell(place), stay_armed(*holder_),
-        operate("close on the part", node, [node](auto& client) { client.close_light(node); })};
-    script_.actions.push_back(squeeze(*holder_));
+    script_.actions = {tell(bench::Enable{node, true}), tell(place), stay_armed(*holder_),
+                       armed(*holder_, operate("close on the part", node,
+                                               [node](auto& client) { client.close_light(node); })),
+                       armed(*holder_, squeeze(*holder_))};
     script_.actions.push_back(
         until(fmt::format("{} does not come to hold the part", step.on), kSettle_us,
               [node](const auto& client) { return client.node(node).in(wire::State::Hold); }));
@@ -76,12 +76,13 @@ class Writer {
     script_.name = "remove from " + step.from;
     if (auto ok = at_level(step.from); !ok) return ok;
     const std::uint8_t node = holder_->node();
-    script_.actions = {tell(bench::Enable{node, true}),
-                       tell(bench::Remove{node}),
-                       stay_armed(*holder_),
-                       operate("release by hand", node, [node](auto& client) { client.release(node); }),
-                       tell(bench::Enable{node, false}),
-                       pause(kHandAwayS)};
+    script_.actions = {
+        tell(bench::Enable{node, true}),
+        tell(bench::Remove{node}),
+        stay_armed(*holder_),
+        armed(*holder_, operate("release by hand", node, [node](auto& client) { client.release(node); })),
+        tell(bench::Enable{node, false}),
+        pause(kHandAwayS)};
     holder_ = nullptr;
     return {};
   }
@@ -173,6 +174,11 @@ class Writer {
       return begin(stage);
     };
     return action;
+  }
+
+  /// `action` on a station whose session a silence may end at any time.
+  static Action armed(const Member& member, Action action) {
+    return rearming(std::move(action), arm(member), member.node());
   }
 
   /// A station that does not grip takes part with no force: its seats are what must be stable.

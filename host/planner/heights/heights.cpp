@@ -4,7 +4,8 @@
 #include <cmath>
 #include <cstdint>
 #include <mutex>
-#include <unordered_map>
+#include <optional>
+#include <vector>
 
 namespace pinjaw::planner {
 namespace {
@@ -13,10 +14,10 @@ namespace {
 /// under eps.
 constexpr double kFootStep_mm = 1e-7;
 constexpr double kNormalStep = 1e-9;
-constexpr std::size_t kShards = 64;  ///< chosen: many more than threads
-/// Feet a shard remembers before it begins anew: some 40 MB in all. Chosen: parts with more distinct feet
-/// hardly ever meet an old one again.
-constexpr std::size_t kMostKnown = 4096;
+/// Places for feet that were met, each with room for one: some 12 MB. Chosen: of many more, few are met
+/// again.
+constexpr std::size_t kPlaces = 1U << 16U;
+constexpr std::size_t kLocks = 64;  ///< chosen: many more than threads
 
 using Key = std::array<std::int64_t, 4>;
 
@@ -34,20 +35,18 @@ Foot foot_of(const Key& key) {
           {static_cast<double>(key[2]) * kNormalStep, static_cast<double>(key[3]) * kNormalStep}};
 }
 
-struct KeyHash {
-  std::size_t operator()(const Key& key) const {
-    std::uint64_t h = 0;
-    for (const std::int64_t part : key) {
-      h = (h ^ static_cast<std::uint64_t>(part)) * 0x9e3779b97f4a7c15U;
-      h ^= h >> 32U;
-    }
-    return static_cast<std::size_t>(h);
+std::size_t hash_of(const Key& key) {
+  std::uint64_t h = 0;
+  for (const std::int64_t part : key) {
+    h = (h ^ static_cast<std::uint64_t>(part)) * 0x9e3779b97f4a7c15U;
+    h ^= h >> 32U;
   }
-};
+  return static_cast<std::size_t>(h);
+}
 
-struct Shard {
-  std::mutex mutex;
-  std::unordered_map<Key, PinHeightOutcome, KeyHash> known;
+struct Known {
+  Key key{};
+  std::optional<PinHeightOutcome> outcome;  ///< nothing where no foot was met yet
 };
 
 }  // namespace
@@ -80,7 +79,8 @@ struct Heights::Impl {
   geometry::Surface part;
   model::PinStock pins;
   double plate_top_mm;
-  std::array<Shard, kShards> shards;
+  std::array<std::mutex, kLocks> locks;
+  std::vector<Known> known = std::vector<Known>(kPlaces);
 };
 
 Heights::Heights(const geometry::Surface& part, const model::PinStock& pins, double plate_top_mm)
@@ -90,15 +90,16 @@ Heights::~Heights() = default;
 
 PinHeightOutcome Heights::at(const Foot& foot) const {
   const Key key = key_of(foot);
-  Shard& shard = impl_->shards[KeyHash{}(key) % kShards];
+  const std::size_t place = hash_of(key) % kPlaces;
+  Known& known = impl_->known[place];
+  std::mutex& mutex = impl_->locks[place % kLocks];
   {
-    const std::lock_guard lock(shard.mutex);
-    if (const auto found = shard.known.find(key); found != shard.known.end()) return found->second;
+    const std::lock_guard lock(mutex);
+    if (known.outcome && known.key == key) return *known.outcome;
   }
   const PinHeightOutcome outcome = pin_height(impl_->part, impl_->pins, impl_->plate_top_mm, foot_of(key));
-  const std::lock_guard lock(shard.mutex);
-  if (shard.known.size() >= kMostKnown) shard.known.clear();
-  shard.known.emplace(key, outcome);
+  const std::lock_guard lock(mutex);
+  known = {key, outcome};
   return outcome;
 }
 

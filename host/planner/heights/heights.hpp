@@ -63,7 +63,7 @@ double plate_top_mm(const model::Kit& kit, const geometry::Surface& part,
                     std::span<const geometry::Surface> attached = {});
 
 /// Finds pin heights on one part (DESIGN 3 phase 3; 3.1 nos 1, 2, 7, 8). A height depends on the foot alone,
-/// so each foot is worked out at its place rounded to 1e-7 mm, and the last few hundred thousand are
+/// so each foot is worked out at its place rounded to 1e-7 mm, and some ten thousand are
 /// remembered. May be used from many threads; answers do not depend on their order.
 class Heights {
  public:

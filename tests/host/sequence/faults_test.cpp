@@ -110,6 +110,20 @@ TEST(LostFrames, all_of_them_for_good_end_the_run_after_three_tries_with_the_par
   expect_held(played, "a dead bus");
 }
 
+TEST(LostFrames, all_for_long_enough_to_end_the_session_do_not_stop_placing) {
+  const Played undisturbed = play(cleaning());
+  const StepReport& placing = undisturbed.report.steps.at(1);
+  for (double at_s = placing.from_s; at_s < placing.to_s; at_s += 0.01) {
+    model::ScriptedFault fault;
+    fault.at_s = at_s;
+    fault.drop_share = 1;
+    fault.seconds = 0.25;
+    const Played played = play(cleaning_with(fault));
+    EXPECT_EQ(played.report.steps.at(1).result, "done") << at_s;
+    EXPECT_FALSE(played.report.plant->dropped);
+  }
+}
+
 TEST(LostFrames, half_of_them_all_the_time_never_drop_the_part) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const Played played = play(cleaning_with(lose(2, 0.5, 1000)), {.seed = seed});
