@@ -20,7 +20,7 @@ struct Phase {
 };
 
 std::array<Phase, 7> phases(const planner::Funnel& funnel) {
-  return {{{"features", "edges that a pin can touch", funnel.features},
+  return {{{"features", "edges with a free side", funnel.features},
            {"planar", "planar fixtures in form closure", funnel.planar},
            {"heights", "with a height for every pin", funnel.heights},
            {"loadable", "that load by closing the jaws", funnel.loadable},

@@ -194,7 +194,7 @@ model::Insertion read_insertion(YamlMap& map) {
 /// The corners of a polyline; neighbours must be apart, else a run has no direction.
 std::vector<Vector3d> points_at(const YamlValue& value) {
   std::vector<Vector3d> points_mm;
-  const auto items = value.list("a list of points [[x, y, z], ...]", {2, 10000});
+  const auto items = value.list("a list of 2 or more points [[x, y, z], ...]", {2, 10000});
   constexpr double kApart_mm = 1e-6;
   for (const YamlValue& item : items.value_or(std::vector<YamlValue>{})) {
     const auto point = vector3(item, coordinate());

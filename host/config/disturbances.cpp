@@ -84,7 +84,8 @@ Entry read_together(const YamlValue& value, Names& names) {
     together.name = names.given(*name);
   }
   const auto of = map.require("of");
-  const auto items = of ? of->list("a list of disturbances [{KIND: {...}}, ...]", {2, 20}) : std::nullopt;
+  const auto items =
+      of ? of->list("a list of 2 to 20 disturbances [{KIND: {...}}, ...]", {2, 20}) : std::nullopt;
   for (const YamlValue& item : items.value_or(std::vector<YamlValue>{})) {
     const auto choice = only_choice(item, kWhat, single_kinds());
     auto single = choice ? read_single_entry(*choice, names) : std::nullopt;

@@ -114,7 +114,7 @@ base::Expected<void> refuse_too_many(const model::Task& task) {
   std::size_t loads = 0;
   for (const model::DisturbanceSource& source : task.disturbances)
     loads = std::min(kMostLoads + 1, loads + count_of_group(group_of(source)));
-  if (std::max<std::size_t>(1, loads) * states <= kMostLoads) return {};
+  if ((loads + 1) * states <= kMostLoads) return {};
   return base::failure(
       fmt::format("the disturbances, each with each state of always, are more than {} loads", kMostLoads));
 }
@@ -133,9 +133,11 @@ base::Expected<std::vector<Disturbance>> disturbances_of(const model::Task& task
     tell_apart(*loads, seen);
     for (Disturbance& load : choices(*loads, *always)) all.push_back(std::move(load));
   }
-  if (all.empty() && !task.always.empty()) {
-    all = *always;
-    if (all.size() == 1) all.front().name = "always";
+  if (task.always.empty()) return all;
+  // by itself, too: with both ends of a load among the loads, it may also come in part
+  for (Disturbance state : *always) {
+    if (always->size() == 1) state.name = "always";
+    all.push_back(std::move(state));
   }
   return all;
 }

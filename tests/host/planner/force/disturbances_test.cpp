@@ -70,11 +70,12 @@ TEST(Disturbances, each_carry_what_acts_always) {
                        model::PlainWrench{"", {1, 0, 0}, {}}, model::PlainWrench{"", {2, 0, 0}, {}}};
   const auto all = disturbances_of(task, body_of(surface));
   ASSERT_TRUE(all.has_value());
-  EXPECT_THAT(names(*all), ElementsAre("insertion", "lever", "wrench", "wrench#2"));
+  EXPECT_THAT(names(*all), ElementsAre("insertion", "lever", "wrench", "wrench#2", "always"));
   const double weight_n = 0.18 * 9.80665;
   EXPECT_NEAR((*all)[0].wrench[2], -15 - weight_n, 1e-12);
   EXPECT_NEAR((*all)[0].wrench[4], 3 * 15 + 20 * weight_n, 1e-12);
   EXPECT_NEAR((*all)[1].wrench[3], 200 - 10 * weight_n, 1e-12);
+  EXPECT_NEAR((*all)[4].wrench[2], -weight_n, 1e-12);  // so that a load may come in part
 }
 
 TEST(Disturbances, of_a_task_with_only_what_acts_always_are_that_alone) {
@@ -93,8 +94,9 @@ TEST(Disturbances, act_with_each_state_of_what_acts_always) {
   task.disturbances = {model::PlainWrench{"lever", Vector3d::Zero(), {200, 0, 0}}, model::PlainWrench{}};
   const auto all = disturbances_of(task, body_of(surface));
   ASSERT_TRUE(all.has_value());
-  EXPECT_THAT(names(*all), ElementsAre("lever with gravity[-z]", "lever with gravity[overhead]",
-                                       "wrench with gravity[-z]", "wrench with gravity[overhead]"));
+  EXPECT_THAT(names(*all),
+              ElementsAre("lever with gravity[-z]", "lever with gravity[overhead]", "wrench with gravity[-z]",
+                          "wrench with gravity[overhead]", "gravity[-z]", "gravity[overhead]"));
   EXPECT_NEAR((*all)[1].wrench[2], 0.18 * 9.80665, 1e-12);
   EXPECT_EQ((*all)[1].wrench[3], 200 + 10 * (*all)[1].wrench[2]);
   task.disturbances.clear();
