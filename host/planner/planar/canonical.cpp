@@ -68,6 +68,24 @@ void keep_poses(std::vector<const PlanarFixture*>& group, std::vector<PlanarFixt
             });
 }
 
+/// The same fixture with the gripper turned by 180 degrees.
+PlanarFixture twin_of(const PlanarFixture& fixture, double spacing_mm) {
+  int top_row = 0;
+  for (const PlanarPin& pin : fixture.pins) top_row = std::max(top_row, pin.hole.row);
+  PlanarFixture twin = fixture;
+  if (fixture.split == model::Split::ThreeOne) twin.split = model::Split::OneThree;
+  if (fixture.split == model::Split::OneThree) twin.split = model::Split::ThreeOne;
+  twin.theta_rad = told_angle(fixture.theta_rad + std::numbers::pi);
+  twin.y_mm = top_row * spacing_mm - fixture.y_mm;
+  twin.x_left_mm = fixture.span_mm - fixture.x_left_mm;
+  for (PlanarPin& pin : twin.pins) {
+    pin.hole.jaw = pin.hole.jaw == model::JawSide::Left ? model::JawSide::Right : model::JawSide::Left;
+    pin.hole.row = top_row - pin.hole.row;
+  }
+  sort_pins(twin);
+  return twin;
+}
+
 bool stands_for_both(const PlanarFixture& fixture, double spacing_mm) {
   const PlanarFixture twin = twin_of(fixture, spacing_mm);
   return std::make_tuple(holes(fixture), features(fixture), fixture.theta_rad) <=
@@ -117,21 +135,12 @@ PlanarFixture fixture_of(const Candidate& candidate, const std::vector<ContactCu
   return fixture;
 }
 
-PlanarFixture twin_of(const PlanarFixture& fixture, double spacing_mm) {
-  int top_row = 0;
-  for (const PlanarPin& pin : fixture.pins) top_row = std::max(top_row, pin.hole.row);
-  PlanarFixture twin = fixture;
-  if (fixture.split == model::Split::ThreeOne) twin.split = model::Split::OneThree;
-  if (fixture.split == model::Split::OneThree) twin.split = model::Split::ThreeOne;
-  twin.theta_rad = told_angle(fixture.theta_rad + std::numbers::pi);
-  twin.y_mm = top_row * spacing_mm - fixture.y_mm;
-  twin.x_left_mm = fixture.span_mm - fixture.x_left_mm;
-  for (PlanarPin& pin : twin.pins) {
-    pin.hole.jaw = pin.hole.jaw == model::JawSide::Left ? model::JawSide::Right : model::JawSide::Left;
-    pin.hole.row = top_row - pin.hole.row;
-  }
-  sort_pins(twin);
-  return twin;
+void add_with_twin(const PlanarFixture& fixture, Twins twins, double spacing_mm,
+                   std::vector<PlanarFixture>& out) {
+  const PlanarFixture twin = twin_of(fixture, spacing_mm);
+  const bool once = twins == Twins::Once;
+  if (!once || holes(fixture) <= holes(twin)) out.push_back(fixture);
+  if (!once || holes(twin) <= holes(fixture)) out.push_back(twin);
 }
 
 std::vector<PlanarFixture> listed_once(const std::vector<PlanarFixture>& fixtures, Twins twins,

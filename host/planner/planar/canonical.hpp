@@ -11,8 +11,10 @@ namespace pinjaw::planner::planar {
 PlanarFixture fixture_of(const Candidate& candidate, const std::vector<ContactCurve>& curves,
                          const std::vector<model::Feature>& features, const model::Kit& kit);
 
-/// The same fixture with the gripper turned by 180 degrees.
-PlanarFixture twin_of(const PlanarFixture& fixture, double spacing_mm);
+/// Adds the fixture and its twin; with Twins::Once only the one that will stand for both, where their holes
+/// tell which: very many fixtures then take half the memory.
+void add_with_twin(const PlanarFixture& fixture, Twins twins, double spacing_mm,
+                   std::vector<PlanarFixture>& out);
 
 /// Sorts by split, holes, features, theta and keeps one of each pose: that with the smaller feature ids
 /// (DESIGN 3.1 no. 5). With Twins::Once also one of each pair of twins (no. 6).

@@ -31,8 +31,8 @@ PlanarResult search(const std::vector<model::Feature>& features, const model::Ki
   std::vector<PlanarFixture> fixtures;
   const auto add = [&](const std::vector<Candidate>& found) {
     for (const Candidate& candidate : found) {
-      fixtures.push_back(planar::fixture_of(candidate, curves, features, kit));
-      fixtures.push_back(planar::twin_of(fixtures.back(), kit.grid.spacing_mm));
+      planar::add_with_twin(planar::fixture_of(candidate, curves, features, kit), options.twins,
+                            kit.grid.spacing_mm, fixtures);
     }
   };
   add(planar::two_and_two(pieces, judge, kit, watch_of(options, {kAfterTables, kAfterTwoAndTwo})));
