@@ -94,7 +94,7 @@ std::string suggestion_text(const planner::Suggestion& suggestion) {
 std::string rest_text(const Advice& advice) {
   std::string text;
   for (const planner::Change& change : advice.suggestions.in_vain) {
-    text += fmt::format("  no design with {} up to: {} (now {})\n", change.key, change.to, change.from);
+    text += fmt::format("  still none with {}: {} (now {})\n", change.key, change.to, change.from);
   }
   for (const std::string& left : advice.suggestions.not_tried) {
     text += fmt::format("  not tried for lack of time: {}\n", left);

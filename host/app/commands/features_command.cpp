@@ -63,6 +63,15 @@ std::string summary_of(const planner::FeatureCounts& counts, const Counts& mesh)
                             counts.features, counts.edgelets, counts.visible, "reachable", counts.reachable);
 }
 
+/// The part's size, so that a file in the wrong unit shows, and its mass where it is known.
+std::string size_text(const part::Part& part) {
+  const geometry::Surface& surface = part.surface;
+  std::string text = fmt::format("{:<12}{:>7.4g} x {:.4g} x {:.4g} mm", "part", surface.x_range_mm().length(),
+                                 surface.y_range_mm().length(), surface.z_range_mm().length());
+  if (part.mass_kg > 0) text += fmt::format(", {:.3g} kg", part.mass_kg);
+  return text + "\n";
+}
+
 bool is_known_ending(const std::string& output) {
   return output.empty() || output == "-" || output.ends_with(".json") || output.ends_with(".svg");
 }
@@ -87,7 +96,7 @@ void run_features(Context& context, const FeaturesOptions& options) {
     bytes = report::features_svg(
         {task->name, found.features, planner::outlines(scene->turned).from_below, task->kit.pins.radius_mm});
   }
-  const std::string summary = summary_of(found.counts, mesh_counts);
+  const std::string summary = size_text(scene->part) + summary_of(found.counts, mesh_counts);
   if (!context.write_result(options.output, bytes)) return;
   if (options.output.empty() || options.output == "-") {
     context.note(summary);
