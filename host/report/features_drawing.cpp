@@ -15,6 +15,8 @@ using geometry::Vector2d;
 
 constexpr double kDrawingMarginMm = 12;
 constexpr double kFootMm = 16;  // title and scale bar
+constexpr double kFootTextMm = 2.6;
+constexpr double kLabelMm = 1.6;
 
 struct CurvesBox {
   double x_lo = std::numeric_limits<double>::infinity();
@@ -22,16 +24,16 @@ struct CurvesBox {
   double y_lo = std::numeric_limits<double>::infinity();
   double y_hi = -std::numeric_limits<double>::infinity();
 
+  void add(const Vector2d& p_mm) {
+    x_lo = std::min(x_lo, p_mm.x());
+    x_hi = std::max(x_hi, p_mm.x());
+    y_lo = std::min(y_lo, p_mm.y());
+    y_hi = std::max(y_hi, p_mm.y());
+  }
   void add(const geometry::Curve& curve) {
     constexpr int kSamples = 16;
     const double length = geometry::length_mm(curve);
-    for (int i = 0; i <= kSamples; ++i) {
-      const Vector2d p = geometry::point_at(curve, length * i / kSamples);
-      x_lo = std::min(x_lo, p.x());
-      x_hi = std::max(x_hi, p.x());
-      y_lo = std::min(y_lo, p.y());
-      y_hi = std::max(y_hi, p.y());
-    }
+    for (int i = 0; i <= kSamples; ++i) add(geometry::point_at(curve, length * i / kSamples));
   }
 };
 
@@ -56,6 +58,13 @@ std::string path(const geometry::Curve& curve, const geometry::Interval& along_m
   return fmt::format("<path d=\"{}\" {}/>\n", path_data(curve, along_mm), style);
 }
 
+std::string edge_path(const SheetEdge& edge) {
+  std::string data;
+  for (const Vector2d& p : edge.points_mm)
+    data += fmt::format("{}{:.4f} {:.4f}", data.empty() ? "M" : " L", p.x(), p.y());
+  return fmt::format("<path d=\"{}\" stroke=\"#999\" stroke-width=\"0.25\"/>\n", data);
+}
+
 std::string feature_paths(const model::Feature& feature) {
   constexpr const char* kReachable = "stroke=\"#0a5ad6\" stroke-width=\"0.6\" stroke-linecap=\"round\"";
   constexpr const char* kUnreachable = "stroke=\"#d06000\" stroke-width=\"0.5\" stroke-dasharray=\"1 1\"";
@@ -64,11 +73,16 @@ std::string feature_paths(const model::Feature& feature) {
   return text;
 }
 
+/// The feature's number beside it; none where it is longer than the feature, and would lie over its
+/// neighbours'.
 std::string feature_label(const model::Feature& feature) {
+  constexpr double kDigitMm = 0.64 * kLabelMm;
+  const std::string number = std::to_string(feature.id);
+  if (geometry::length_mm(feature.curve) < kDigitMm * static_cast<double>(number.size())) return {};
   const double middle_mm = geometry::length_mm(feature.curve) / 2;
   const Vector2d p =
       geometry::point_at(feature.curve, middle_mm) - 1.5 * model::outward_normal_at(feature, middle_mm);
-  return fmt::format("<text x=\"{:.3f}\" y=\"{:.3f}\">{}</text>\n", p.x(), -p.y() + 0.55, feature.id);
+  return fmt::format("<text x=\"{:.3f}\" y=\"{:.3f}\">{}</text>\n", p.x(), -p.y() + 0.55, number);
 }
 
 std::string escaped(const std::string& text) {
@@ -91,9 +105,16 @@ std::string escaped(const std::string& text) {
 std::string features_svg(const FeaturesDrawing& drawing) {
   CurvesBox box;
   for (const model::Feature& feature : drawing.features) box.add(feature.curve);
-  for (const geometry::Curve& curve : drawing.seen_from_gripper) box.add(curve);
+  for (const SheetEdge& edge : drawing.edges) {
+    for (const Vector2d& p_mm : edge.points_mm) box.add(p_mm);
+  }
   if (!std::isfinite(box.x_lo)) box = {0, 50, 0, 20};
-  const double width = std::max(110.0, box.x_hi - box.x_lo + 2 * kDrawingMarginMm);
+  const std::string foot =
+      fmt::format("{}: {} features; blue: a closed pin has room", drawing.title, drawing.features.size());
+  const double foot_mm =
+      std::max(75 + drawing.pin_radius_mm, 0.6 * kFootTextMm * static_cast<double>(foot.size()));
+  const double width = std::max(foot_mm, box.x_hi - box.x_lo) + 2 * kDrawingMarginMm;
+  const double left = (box.x_lo + box.x_hi - width) / 2;
   const double height = box.y_hi - box.y_lo + 2 * kDrawingMarginMm + kFootMm;
   const double foot_y = -box.y_lo + kDrawingMarginMm + 4;
 
@@ -102,22 +123,24 @@ std::string features_svg(const FeaturesDrawing& drawing) {
       "{3:.3f} {0:.3f} "
       "{1:.3f}\">\n<title>{4}</title>\n<rect x=\"{2:.3f}\" y=\"{3:.3f}\" width=\"100%\" height=\"100%\" "
       "fill=\"#fff\"/>\n",
-      width, height, box.x_lo - kDrawingMarginMm, -box.y_hi - kDrawingMarginMm, escaped(drawing.title));
+      width, height, left, -box.y_hi - kDrawingMarginMm, escaped(drawing.title));
   svg += "<g transform=\"scale(1 -1)\" fill=\"none\">\n";
-  for (const geometry::Curve& curve : drawing.seen_from_gripper) {
-    svg += path(curve, {0, geometry::length_mm(curve)}, "stroke=\"#999\" stroke-width=\"0.25\"");
+  for (const SheetEdge& edge : drawing.edges) {
+    if (edge.from_below) svg += edge_path(edge);
   }
   for (const model::Feature& feature : drawing.features) svg += feature_paths(feature);
-  svg += "</g>\n<g font-family=\"sans-serif\" font-size=\"1.6\" text-anchor=\"middle\" fill=\"#333\">\n";
+  svg += fmt::format(
+      "</g>\n<g font-family=\"sans-serif\" font-size=\"{}\" text-anchor=\"middle\" fill=\"#333\">\n",
+      kLabelMm);
   for (const model::Feature& feature : drawing.features) svg += feature_label(feature);
   svg += fmt::format(
-      "</g>\n<g font-family=\"sans-serif\" font-size=\"2.6\" fill=\"#000\" transform=\"translate({:.3f} "
+      "</g>\n<g font-family=\"sans-serif\" font-size=\"{}\" fill=\"#000\" transform=\"translate({:.3f} "
       "{:.3f})\">\n"
       "<path d=\"M0 0 h50 M0 -1.5 v3 M50 -1.5 v3\" stroke=\"#000\" stroke-width=\"0.3\"/><text x=\"52\" "
       "y=\"1\">50 mm</text>\n"
       "<circle cx=\"72\" cy=\"0\" r=\"{:.4f}\" fill=\"none\" stroke=\"#000\" stroke-width=\"0.3\"/>\n"
-      "<text x=\"0\" y=\"6.5\">{}: {} features; blue: a closed pin has room</text>\n</g>\n</svg>\n",
-      box.x_lo, foot_y, drawing.pin_radius_mm, escaped(drawing.title), drawing.features.size());
+      "<text x=\"0\" y=\"6.5\">{}</text>\n</g>\n</svg>\n",
+      kFootTextMm, left + kDrawingMarginMm, foot_y, drawing.pin_radius_mm, escaped(foot));
   return svg;
 }
 

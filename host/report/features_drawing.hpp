@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "host/model/feature.hpp"
+#include "host/report/sheet.hpp"
 
 namespace pinjaw::report {
 
@@ -11,12 +12,13 @@ namespace pinjaw::report {
 struct FeaturesDrawing {
   std::string title;
   std::vector<model::Feature> features;
-  std::vector<geometry::Curve> seen_from_gripper;  ///< outline as the gripper sees it
+  std::vector<SheetEdge> edges;  ///< of the part; those seen from below are drawn
   double pin_radius_mm = 0;
 };
 
-/// An SVG at 1:1 mm: the outline thin and grey; each feature bold where a closed pin has room, dashed where
-/// not, with its number; a scale bar. A pin is drawn for size.
+/// An SVG at 1:1 mm: the edges that the gripper sees thin and grey; each feature bold where a closed pin has
+/// room, dashed where not, with its number where that is shorter than the feature; a scale bar. A pin is
+/// drawn for size.
 std::string features_svg(const FeaturesDrawing& drawing);
 
 }  // namespace pinjaw::report

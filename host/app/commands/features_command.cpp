@@ -10,6 +10,7 @@
 #include "host/planner/plan/planar_json.hpp"
 #include "host/planner/plan/scene.hpp"
 #include "host/report/features_drawing.hpp"
+#include "host/report/part_edges.hpp"
 
 namespace pinjaw::app {
 
@@ -94,7 +95,7 @@ void run_features(Context& context, const FeaturesOptions& options) {
   std::string bytes = document;
   if (drawing) {
     bytes = report::features_svg(
-        {task->name, found.features, planner::outlines(scene->turned).from_below, task->kit.pins.radius_mm});
+        {task->name, found.features, report::sheet_edges(scene->turned), task->kit.pins.radius_mm});
   }
   const std::string summary = size_text(scene->part) + summary_of(found.counts, mesh_counts);
   if (!context.write_result(options.output, bytes)) return;

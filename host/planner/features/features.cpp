@@ -17,7 +17,6 @@ namespace {
 constexpr double kLeastFeatureMm = model::kEps_mm;
 
 /// A drawing shows a step from this height on.
-constexpr double kDrawnStepMm = 0.1;
 
 /// A piece of a carrier between two splits; why it has no visible stretch, if it has none.
 struct Edgelet {
@@ -150,17 +149,6 @@ Features features_of_profile(const model::Profile& profile) {
   return result;
 }
 
-std::vector<geometry::Curve> steps_seen(const part::Part& part) {
-  const Projection projection = projected(part);
-  const auto carriers = carriers_of(projection);
-  std::vector<geometry::Curve> curves;
-  for (std::size_t i = 0; i < carriers.size(); ++i) {
-    for (const Stretch& stretch : seen(carriers, i, part.surface, kDrawnStepMm).stretches)
-      curves.push_back(carriers[i].curve_over(stretch.along_mm, stretch.side));
-  }
-  return curves;
-}
-
 }  // namespace
 
 Features find_features(const part::Part& part, const model::PinStock& pins) {
@@ -195,15 +183,6 @@ Features find_features(const part::Part& part, const model::PinStock& pins) {
   }
   count_fates(part.edge_counts, projection.sources, counts);
   counts.features = static_cast<int>(result.features.size());
-  return result;
-}
-
-Outlines outlines(const part::Part& part) {
-  Outlines result;
-  result.from_below = steps_seen(part);
-  for (const geometry::Curve& curve : steps_seen(part::turned(part, model::Side::Above))) {
-    result.from_above.push_back(part::mirrored(curve, 0));
-  }
   return result;
 }
 

@@ -37,11 +37,4 @@ struct Features {
 /// the features are model::features_of, reachable over their whole length.
 Features find_features(const part::Part& part, const model::PinStock& pins);
 
-/// The part's outline for drawings, in plan, in the frame of `part`: edges seen from below and from above.
-struct Outlines {
-  std::vector<geometry::Curve> from_below;
-  std::vector<geometry::Curve> from_above;
-};
-Outlines outlines(const part::Part& part);
-
 }  // namespace pinjaw::planner

@@ -79,20 +79,5 @@ TEST(GlueGun, has_the_smooth_edge_above_its_fillet_as_outline) {
   EXPECT_TRUE(outline_found);
 }
 
-TEST(Outlines, show_more_from_both_sides_than_pins_can_touch) {
-  const part::Part part = part_of(shipped_shape("valve_housing"));
-  const Outlines seen = outlines(part);
-  double below_mm = 0;
-  for (const auto& curve : seen.from_below) below_mm += geometry::length_mm(curve);
-  EXPECT_GE(below_mm, total_length_mm(find_features(part, shipped_stock()).features));
-  EXPECT_GT(seen.from_above.size(), 50U);
-  for (const auto& curves : {seen.from_below, seen.from_above}) {
-    for (const auto& curve : curves) {
-      const Vector2d p_mm = geometry::point_at(curve, geometry::length_mm(curve) / 2);
-      EXPECT_LE(p_mm.cwiseAbs().maxCoeff(), 25.41);
-    }
-  }
-}
-
 }  // namespace
 }  // namespace pinjaw::planner
