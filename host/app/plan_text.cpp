@@ -114,6 +114,8 @@ std::string certified_text(const planner::Plan& plan) {
     }
     text += fmt::format("{:<10} {:>9.1f} {:>9.1f} {:>9.1f}  {}\n", design.id, worst.sampled_n, worst.low_n,
                         worst.high_n, where);
+    if (!worst.closed)
+      text += fmt::format("{:<10} bracket not closed: the search ended by its limit of splits\n", "");
     const double usable_n = design.squeeze.usable_n;
     if (worst.low_n > usable_n) {
       text += fmt::format("{:<10} warning: that is more than the usable {:.1f} N\n", "", usable_n);

@@ -45,7 +45,7 @@ struct Alternative {
 
 /// The spray that needs the most squeeze of a design, anywhere a jet reaches the part: a bracket. Part frame.
 struct Certified {
-  double sampled_n = 0;  ///< the most that a sampled spray needs
+  double sampled_n = 0;  ///< the most that a sampled spray needs; never above low_n
   double low_n = 0;      ///< needed by the spray at `at_mm`, which a jet reaches; +inf: no squeeze resists it
   double high_n = 0;     ///< none needs more, wherever it hits
   std::string spray;     ///< name of that spray, and of what acts with it where that has several states
@@ -53,6 +53,7 @@ struct Certified {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit, outward; the force acts against it
   Eigen::Vector3d from = Eigen::Vector3d::Zero();    ///< unit: the jet comes from there
   bool curved = false;                               ///< whether it hits a curved face
+  bool closed = true;                                ///< whether the ends met as near as the search aims at
 };
 
 /// What a design comes to on the part's exact faces, of which phases 3 and 4 know the triangles. In mm.

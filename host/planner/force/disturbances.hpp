@@ -37,10 +37,12 @@ struct Jet {
 /// The sprays of a task, in its order. Fails as disturbances_of() does.
 base::Expected<std::vector<Jet>> jets_of(const model::Task& task, const Body& body);
 
-/// Where a jet hits, and its force.
+/// Where a jet hits, its force, and where it comes from (unit).
 struct SprayHit {
   geometry::Vector3d p_mm = geometry::Vector3d::Zero();
   geometry::Vector3d force_n = geometry::Vector3d::Zero();
+  geometry::Vector3d from = geometry::Vector3d::UnitZ();
+  int triangle = 0;
 };
 
 /// Sampled jets: directions uniform on the sphere (or within the cone about `from`), origins uniform over the

@@ -89,7 +89,7 @@ base::Expected<std::vector<SprayHit>> spray_hits(const model::Spray& spray,
     const auto hit = surface.first_hit(ray_over_shadow(box, direction, random));
     if (!hit) continue;
     const double sign = hit->normal.dot(direction) < 0 ? -1 : 1;
-    hits.push_back({hit->point_mm, sign * spray.force_n * hit->normal});
+    hits.push_back({hit->point_mm, sign * spray.force_n * hit->normal, -direction, hit->triangle});
   }
   return hits;
 }

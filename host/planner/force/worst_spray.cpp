@@ -78,14 +78,18 @@ bool has_curved_faces(const geometry::TriangleMesh& mesh) {
   return false;
 }
 
+using Samples = std::vector<std::vector<SprayHit>>;
+
 /// One grasp under the jets of one part.
 class Search {
  public:
   Search(const SprayedPart& part, const std::vector<Jet>& jets, std::vector<JetReach>& reach,
-         const WorstOptions& options, const Grasp& grasp, model::Side side, model::FrictionModel friction)
+         const Samples& samples, const WorstOptions& options, const Grasp& grasp, model::Side side,
+         model::FrictionModel friction)
       : part_(part),
         jets_(jets),
         reach_(reach),
+        samples_(samples),
         options_(options),
         solver_(grasp),
         side_(side),
@@ -94,11 +98,13 @@ class Search {
   }
 
   std::optional<model::Certified> run() {
+    try_samples();
     fill();
     for (int splits = 0; !pieces_.empty();) {
       const Piece piece = pieces_.top();
       if (settled(piece.upper_n) || splits >= options_.most_splits) {
         high_n_ = std::max(high_n_, piece.upper_n);
+        look_at_the_rest();
         break;
       }
       pieces_.pop();
@@ -112,6 +118,8 @@ class Search {
     }
     if (!found_) return std::nullopt;
     found_->high_n = std::max(high_n_, found_->low_n);
+    found_->closed = settled(found_->high_n);
+    found_->sampled_n = sampled_n_;
     return found_;
   }
 
@@ -143,6 +151,31 @@ class Search {
     if (std::isinf(found_->low_n)) return true;
     return upper_n - rim_n_ <=
            found_->low_n + std::max(options_.tolerance_n, options_.tolerance_share * found_->low_n);
+  }
+
+  /// The worst sample is the first spray to beat. It pushes along its facet's normal.
+  void try_samples() {
+    for (std::size_t jet = 0; jet < jets_.size(); ++jet) {
+      for (const SprayHit& hit : samples_[jet]) {
+        const Vector3d normal = -hit.force_n.normalized();
+        const JetNeed needed = need(jets_[jet], hit.p_mm, normal);
+        sampled_n_ = std::max(sampled_n_, needed.force_n);
+        if (!beats(needed)) continue;
+        const Corners p_mm = corners_of(part_.surface->mesh(), static_cast<std::size_t>(hit.triangle));
+        const Corners normals =
+            normals_of(part_.surface->mesh(), static_cast<std::size_t>(hit.triangle), normal_of(p_mm));
+        take(jet, needed, {hit.p_mm, normal, hit.from}, spread_rad(normals, normal_of(p_mm)) > 0);
+      }
+    }
+  }
+
+  /// Where hidden places use up the splits, the worst spray may wait behind them: the low end still gains.
+  void look_at_the_rest() {
+    for (int looks = 0; looks < options_.most_looks && !pieces_.empty(); ++looks) {
+      if (settled(pieces_.top().upper_n)) return;
+      visit(pieces_.top());
+      pieces_.pop();
+    }
   }
 
   void fill() {
@@ -217,18 +250,32 @@ class Search {
     std::stable_sort(tries.begin(), tries.end(),
                      [](const Try& a, const Try& b) { return a.need.force_n > b.need.force_n; });
     for (const Try& one : tries) {
-      if (found_ && one.need.force_n <= found_->low_n) return;
+      if (!beats(one.need)) return;
       const auto from = reach_[piece.jet].direction_to(one.p_mm, piece.triangle);
       if (!from) continue;
-      const Jet& jet = jets_[piece.jet];
-      const std::string& with = jet.with[one.need.with].name;
-      found_ = model::Certified{.low_n = one.need.force_n,
-                                .spray = with.empty() ? jet.name : jet.name + " with " + with,
-                                .at_mm = one.p_mm,
-                                .normal = one.normal,
-                                .from = *from,
-                                .curved = spread_rad(piece.normal, normal_of(piece.p_mm)) > 0};
+      take(piece.jet, one.need, {one.p_mm, one.normal, *from},
+           spread_rad(piece.normal, normal_of(piece.p_mm)) > 0);
     }
+  }
+
+  /// Where a spray hits, the outward normal there, and where it comes from.
+  struct Strike {
+    Vector3d at_mm;
+    Vector3d normal;
+    Vector3d from;
+  };
+
+  [[nodiscard]] bool beats(const JetNeed& needed) const { return !found_ || needed.force_n > found_->low_n; }
+
+  void take(std::size_t which, const JetNeed& needed, const Strike& strike, bool curved) {
+    const Jet& jet = jets_[which];
+    const std::string& with = jet.with[needed.with].name;
+    found_ = model::Certified{.low_n = needed.force_n,
+                              .spray = with.empty() ? jet.name : jet.name + " with " + with,
+                              .at_mm = strike.at_mm,
+                              .normal = strike.normal,
+                              .from = strike.from,
+                              .curved = curved};
   }
 
   void split(const Piece& piece) {
@@ -253,6 +300,7 @@ class Search {
   SprayedPart part_;
   const std::vector<Jet>& jets_;
   std::vector<JetReach>& reach_;
+  const Samples& samples_;
   WorstOptions options_;
   SqueezeSolver solver_;
   model::Side side_;
@@ -261,7 +309,8 @@ class Search {
   std::vector<double> alone_n_;  ///< what acts with each jet, without it
   std::priority_queue<Piece, std::vector<Piece>, LowerBound> pieces_;
   int made_ = 0;
-  double high_n_ = 0;  ///< over the pieces that are done with
+  double sampled_n_ = 0;  ///< over the samples
+  double high_n_ = 0;     ///< over the pieces that are done with
   std::optional<model::Certified> found_;
 };
 
@@ -282,12 +331,20 @@ JetNeed jet_need(SqueezeSolver& solver, const Jet& jet, const Vector3d& p_mm, co
 
 WorstSpray::WorstSpray(const SprayedPart& part, std::vector<Jet> jets, const WorstOptions& options)
     : part_(part), options_(options), jets_(std::move(jets)) {
-  for (const Jet& jet : jets_) reach_.emplace_back(*part_.surface, jet.spray);
+  for (const Jet& jet : jets_) {
+    reach_.emplace_back(*part_.surface, jet.spray);
+    auto& samples = samples_.emplace_back();
+    const auto hits = spray_hits(jet.spray, *part_.surface);
+    if (!hits) continue;  // rays that do not find the part are no sample, and sampled_n tells that
+    for (const SprayHit& hit : *hits) {
+      if (jet_meets_first(*part_.surface, hit.p_mm, hit.from)) samples.push_back(hit);
+    }
+  }
 }
 
 std::optional<model::Certified> WorstSpray::of(const Grasp& grasp, model::Side side,
                                                model::FrictionModel friction) {
-  return Search(part_, jets_, reach_, options_, grasp, side, friction).run();
+  return Search(part_, jets_, reach_, samples_, options_, grasp, side, friction).run();
 }
 
 }  // namespace pinjaw::planner

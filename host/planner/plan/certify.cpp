@@ -3,34 +3,12 @@
 #include <algorithm>
 
 namespace pinjaw::planner {
-namespace {
-
-/// The most that a sampled spray of the plan needs.
-double sampled_n(const Plan& plan, const model::Design& design) {
-  const auto is_sample = [&](const model::Disturbance& disturbance) {
-    return std::ranges::any_of(plan.jets,
-                               [&](const Jet& jet) { return disturbance.name.starts_with(jet.name + "["); });
-  };
-  SqueezeSolver solver(grasp_of(design, plan.friction));
-  double most_n = 0;
-  for (const model::Disturbance& disturbance : plan.disturbances) {
-    if (!is_sample(disturbance)) continue;
-    const auto outcome = solver.least_squeeze(turned(disturbance.wrench, plan.side), plan.friction_model);
-    if (const auto* required = std::get_if<Required>(&outcome)) most_n = std::max(most_n, required->force_n);
-  }
-  return most_n;
-}
-
-}  // namespace
-
 WorstSpray worst_spray_of(const Plan& plan, const Scene& scene) {
   return WorstSpray({&scene.part.surface, scene.part.mesh_deflection_mm}, plan.jets);
 }
 
 std::optional<model::Certified> certified(const Plan& plan, WorstSpray& search, const model::Design& design) {
-  auto found = search.of(grasp_of(design, plan.friction), plan.side, plan.friction_model);
-  if (found) found->sampled_n = sampled_n(plan, design);
-  return found;
+  return search.of(grasp_of(design, plan.friction), plan.side, plan.friction_model);
 }
 
 base::Expected<void> certify(const model::Task& task, const Scene& scene, std::size_t count,

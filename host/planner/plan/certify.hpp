@@ -12,7 +12,7 @@ namespace pinjaw::planner {
 base::Expected<void> certify(const model::Task& task, const Scene& scene, std::size_t count,
                              std::stop_token stop, const ProgressSink& progress, Plan& plan);
 
-/// Its bracket, found anew from the plan's jets; `sampled_n` from the plan's disturbances.
+/// Its bracket, found anew from the plan's jets.
 std::optional<model::Certified> certified(const Plan& plan, WorstSpray& search, const model::Design& design);
 
 /// A search over the part of the scene under the plan's jets. The scene outlives it.

@@ -11,6 +11,7 @@ namespace {
 using base::JsonField;
 using nlohmann::ordered_json;
 
+constexpr std::int64_t kMostRays = 100000;  // as a task may name
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double number_or_infinity(const JsonField& field, std::string_view key) {
@@ -28,6 +29,7 @@ ordered_json certified_json(const model::Certified& certified) {
   json["normal"] = vector_json(certified.normal);
   json["from"] = vector_json(certified.from);
   json["face"] = certified.curved ? "curved" : "flat";
+  json["closed"] = certified.closed;
   return json;
 }
 
@@ -41,6 +43,7 @@ model::Certified read_certified(const JsonField& field) {
   certified.normal = read_vector3(field.at("normal"));
   certified.from = read_vector3(field.at("from"));
   certified.curved = field.at("face").one_of({"flat", "curved"}) == 1;
+  certified.closed = field.at("closed").truth();
   return certified;
 }
 
@@ -70,7 +73,10 @@ std::vector<model::Disturbance> read_disturbances(const JsonField& field) {
 ordered_json jets_json(const std::vector<Jet>& jets) {
   ordered_json list = ordered_json::array();
   for (const Jet& jet : jets) {
-    ordered_json entry = {{"name", jet.name}, {"force_n", jet.spray.force_n}};
+    ordered_json entry = {{"name", jet.name},
+                          {"force_n", jet.spray.force_n},
+                          {"count", jet.spray.count},
+                          {"seed", jet.spray.seed}};
     if (jet.spray.from) {
       entry["from"] = vector_json(*jet.spray.from);
       entry["within_deg"] = jet.spray.within_rad.value_or(0) / kDegree;
@@ -88,6 +94,10 @@ std::vector<Jet> read_jets(const JsonField& field) {
     jet.name = entry.text("name");
     jet.spray.name = jet.name;
     jet.spray.force_n = entry.number("force_n");
+    jet.spray.count = static_cast<int>(
+        entry.at("count").whole(base::WholeRule{"a count of rays from 1 to 100000", 1, kMostRays}));
+    jet.spray.seed =
+        static_cast<std::uint64_t>(entry.at("seed").whole(base::WholeRule{"a seed of 0 or more", 0}));
     if (entry.has("from")) {
       jet.spray.from = read_vector3(entry.at("from"));
       jet.spray.within_rad = entry.number("within_deg") * kDegree;

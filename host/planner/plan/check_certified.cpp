@@ -35,6 +35,9 @@ std::vector<Claim> check_certified(const Plan& plan, const Scene& scene, const m
       std::abs(stated.normal.norm() - 1) <= kUnitTol && std::abs(stated.from.norm() - 1) <= kUnitTol;
   claims.push_back(claim(design, "the worst spray's directions are of length 1", units, "one is not"));
 
+  claims.push_back(claim(design, "no sampled spray needs more than the worst one",
+                         stated.low_n >= stated.sampled_n - kForceTolN, "one does"));
+
   double needs_n = -1;
   bool reached = false;
   SqueezeSolver solver(grasp_of(design, plan.friction));
@@ -58,6 +61,10 @@ std::vector<Claim> check_certified(const Plan& plan, const Scene& scene, const m
   claims.push_back(equal(design, "most that a sampled spray needs", stated.sampled_n, found->sampled_n));
   claims.push_back(claim(design, "the worst spray acts along the surface's normal",
                          (found->normal - stated.normal).norm() <= kUnitTol, "the search finds another"));
+  claims.push_back(claim(design, "kind of face that the worst spray hits", found->curved == stated.curved,
+                         found->curved ? "it is curved" : "it is flat"));
+  claims.push_back(claim(design, "whether the bracket is closed", found->closed == stated.closed,
+                         found->closed ? "it is" : "it is not"));
   return claims;
 }
 

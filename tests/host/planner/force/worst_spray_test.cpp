@@ -221,6 +221,27 @@ TEST(WorstSpray, of_a_cylinder_lies_between_a_dense_search_of_the_true_surface_a
   EXPECT_LE(sampled_n(part, jet(), 10000, 1), found.high_n + 1e-9);
 }
 
+TEST(WorstSpray, needs_no_less_than_any_sample_even_where_the_search_may_not_split) {
+  const Surface part = cylinder(12, 10, 24);
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    for (const int splits : {0, 5, 1000}) {
+      Jet spray = jet();
+      spray.spray.count = 300;
+      spray.spray.seed = seed;
+      WorstOptions options;
+      options.most_splits = splits;
+      options.most_looks = 0;
+      const model::Certified found = worst(part, spray, 12 * (1 - std::cos(std::numbers::pi / 24)), options);
+      EXPECT_NEAR(found.sampled_n, sampled_n(part, jet(), 300, seed), 1e-9);
+      EXPECT_GE(found.low_n, found.sampled_n);
+      EXPECT_GE(found.high_n, found.low_n);
+      if (splits == 1000) EXPECT_TRUE(found.closed);
+      if (!found.closed) EXPECT_GT(found.high_n - found.low_n, tolerance_n(found));
+      EXPECT_TRUE(jet_meets_first(part, found.at_mm, found.from));
+    }
+  }
+}
+
 TEST(WorstSpray, names_the_state_that_acts_with_it) {
   const Surface block = box({0, 0, 0}, {40, 20, 10});
   Jet spray = jet();
