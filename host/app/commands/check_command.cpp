@@ -10,6 +10,7 @@
 #include "host/app/commands/planning.hpp"
 #include "host/app/plan_text.hpp"
 #include "host/planner/plan/check.hpp"
+#include "host/planner/plan/check_feet.hpp"
 #include "host/planner/plan/exact.hpp"
 #include "host/planner/plan/plan_json.hpp"
 
@@ -124,6 +125,7 @@ void run_check(Context& context, const CheckOptions& options) {
     designs.push_back(&design);
     verdict.add(planner::check_design(*plan, *scene, design));
   }
+  verdict.add(planner::check_feet(*plan, *scene, designs));
   const auto rechecked = to_recheck(designs, options.exact);
   const auto exact = planner::recheck_exactly(*plan, *scene, rechecked);
   if (!exact) return context.fail(ExitCode::BadFile, options.plan + ": part: " + exact.error().message);

@@ -8,6 +8,7 @@
 #include <iterator>
 #include <limits>
 #include <set>
+#include <tuple>
 
 #include "host/planner/force/force.hpp"
 #include "host/planner/heights/heights.hpp"
@@ -15,6 +16,7 @@
 #include "host/planner/plan/check_certified.hpp"
 #include "host/planner/plan/check_robust.hpp"
 #include "host/planner/plan/check_tolerances.hpp"
+#include "host/planner/plan/design_names.hpp"
 #include "host/planner/plan/pin_places.hpp"
 
 namespace pinjaw::planner {
@@ -58,6 +60,17 @@ void check_holes(const Plan& plan, const model::Design& design, Report& report) 
   }
   report.claim("four pins in four holes of the kit", in_range && design.pins.size() == 4 && holes.size() == 4,
                fmt::format("{} pins in {} holes", design.pins.size(), holes.size()));
+  const auto left = std::ranges::count(design.pins, model::JawSide::Left,
+                                       [](const model::PinDesign& pin) { return pin.hole.jaw; });
+  const int of_split = design.split == model::Split::TwoTwo     ? 2
+                       : design.split == model::Split::ThreeOne ? 3
+                                                                : 1;
+  report.claim("the split is that of the pins", left == of_split,
+               fmt::format("{} stand on the left jaw", left));
+  // fixtures that the plan did not keep may have had the digits, too: a number tells equal ones apart
+  const std::string digits = DesignNames("gripper").next(design);
+  report.claim("the id is that of the layout", design.id == digits || design.id.starts_with(digits + "-"),
+               "it is " + digits);
   double nearest_mm = std::numeric_limits<double>::infinity();
   for (const model::PinDesign& one : design.pins) {
     for (const model::PinDesign& other : design.pins) {
@@ -174,8 +187,16 @@ void check_loading(const Plan& plan, const Scene& scene, const model::Design& de
   const auto loaded = load(fixture, pins, plan.kit, surroundings, options);
   report.claim("the open gripper comes along z and closes without touching anything", loaded.has_value(),
                loaded ? std::string() : std::string(to_string(loaded.error())));
-  if (loaded)
-    report.equal("jaw separation", design.jaw_separation_mm, loaded->jaw_separation_mm, kLengthTolMm);
+  if (!loaded) return;
+  report.equal("jaw separation", design.jaw_separation_mm, loaded->jaw_separation_mm, kLengthTolMm);
+  const auto same = [](const model::Alternative& one, const model::Alternative& other) {
+    return one.left_shift == other.left_shift && one.right_shift == other.right_shift &&
+           std::abs(one.jaw_separation_mm - other.jaw_separation_mm) <= kLengthTolMm;
+  };
+  report.claim(
+      "the other column shifts are those that load",
+      std::ranges::equal(design.alternatives, loaded->alternatives, same),
+      fmt::format("{} are stated, {} load", design.alternatives.size(), loaded->alternatives.size()));
 }
 
 /// The contact forces under the critical load are in equilibrium with it, inside friction, and squeeze as
@@ -241,6 +262,27 @@ void check_force(const Plan& plan, const model::Design& design, Report& report) 
   report.claim("the usable force holds it", design.squeeze.margin_n >= 0, "the margin is negative");
 }
 
+bool ids_are_unique(const Plan& plan) {
+  std::set<std::string> ids;
+  return std::ranges::all_of(plan.designs,
+                             [&](const model::Design& design) { return ids.insert(design.id).second; });
+}
+
+/// What each phase lost is what it let through less than it was given.
+void check_losses(const Plan& plan, Report& report) {
+  const Funnel& f = plan.funnel;
+  const std::vector<std::tuple<std::string, std::int64_t, std::int64_t>> phases = {
+      {"heights", f.planar, f.heights}, {"loading", f.heights, f.loadable}, {"force", f.loadable, f.strong}};
+  for (const auto& [phase, given, left] : phases) {
+    std::int64_t lost = 0;
+    if (const auto found = plan.losses.find(phase); found != plan.losses.end()) {
+      for (const auto& [reason, count] : found->second) lost += count;
+    }
+    report.claim("the losses of " + phase + " close with the funnel", given - lost == left,
+                 fmt::format("{} less {} is not {}", given, lost, left));
+  }
+}
+
 /// Smallest required squeeze first; ranked by worst, those that tell it come first, least worst first.
 bool in_order(const Plan& plan) {
   const auto nominal_n = [](const model::Design& design) { return design.squeeze.required_n; };
@@ -265,6 +307,8 @@ std::vector<Claim> check_plan(const Plan& plan, const Scene& scene) {
                f.planar >= f.heights && f.heights >= f.loadable && f.loadable >= f.not_wedging &&
                    f.not_wedging >= f.resistable && f.resistable >= f.strong,
                "one does");
+  check_losses(plan, report);
+  report.claim("no two designs have one id", ids_are_unique(plan), "two do");
   report.claim("the plan lists no more designs than are strong",
                static_cast<std::int64_t>(plan.designs.size()) <= f.strong,
                fmt::format("{} designs of {}", plan.designs.size(), f.strong));

@@ -24,6 +24,15 @@ Funnel read_funnel(const JsonField& field) {
           field.whole("strong")};
 }
 
+Losses read_losses(const JsonField& field) {
+  Losses losses;
+  for (const std::string& phase : field.keys()) {
+    for (const std::string& reason : field.at(phase).keys())
+      losses[phase][reason] = field.at(phase).whole(reason);
+  }
+  return losses;
+}
+
 ordered_json obstacles_json(const std::vector<model::Obstacle>& obstacles) {
   ordered_json list = ordered_json::array();
   for (const model::Obstacle& obstacle : obstacles) {
@@ -99,6 +108,7 @@ base::Checked<Plan> read_plan(const std::filesystem::path& path) {
   plan.disturbances = read_disturbances(top.at("disturbances"));
   if (top.has("jets")) plan.jets = read_jets(top.at("jets"));
   plan.funnel = read_funnel(top.at("funnel"));
+  plan.losses = read_losses(top.at("losses"));
   if (top.has("ranges")) plan.ranges = read_ranges_json(top.at("ranges"));
   if (top.has("rank")) plan.ranked_by_worst = top.at("rank").one_of({"nominal", "robust"}) == 1;
   for (const JsonField& design : top.at("designs").list()) plan.designs.push_back(read_design(design));

@@ -28,11 +28,7 @@ TEST(PlanJson, reads_back_as_the_same_plan) {
   const Plan& plan = cam().plan;
   const auto again = read_plan(written("cam.json", to_json(plan)));
   ASSERT_TRUE(again.has_value()) << base::render(again.error(), "");
-  EXPECT_EQ(to_json(*again).substr(0, 2000), [&] {
-    Plan without_losses = plan;
-    without_losses.losses.clear();
-    return to_json(without_losses).substr(0, 2000);
-  }());
+  EXPECT_EQ(to_json(*again).substr(0, 2000), to_json(plan).substr(0, 2000));
   ASSERT_EQ(again->designs.size(), plan.designs.size());
   for (std::size_t i = 0; i < plan.designs.size(); ++i) {
     EXPECT_EQ(again->designs[i].squeeze.required_n, plan.designs[i].squeeze.required_n);
