@@ -75,8 +75,7 @@ void keep(std::vector<Outcome>& outcomes, planner::Plan& plan) {
 
 std::vector<Outcome> stand_and_load(const std::vector<PalletFixture>& pallets, const model::Kit& kit,
                                     const planner::Scene& scene, bool loading_2d) {
-  std::vector<geometry::Surface> others = scene.attached;
-  others.insert(others.end(), scene.obstacles.begin(), scene.obstacles.end());
+  const std::vector<geometry::Surface> others = planner::others_of(scene);
   const double plate_top_mm = planner::plate_top_mm(kit, scene.turned.surface, scene.attached);
   const planner::Surroundings surroundings{&scene.turned.surface, others, plate_top_mm};
   const planner::LoadingOptions options{

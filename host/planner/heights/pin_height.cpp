@@ -35,11 +35,15 @@ Patch around(const Surface& part, const model::PinStock& pins, const Foot& foot)
   return {part, disc(axis_mm(pins, foot), pins.radius_mm + 3 * model::kEps_mm)};
 }
 
-/// The three rays of BB 3.3: what a pin there may touch and how tall it may be.
-PinHeight probe(const Patch& part, const model::PinStock& pins, const Foot& foot) {
+/// The edge at the foot and the three rays of BB 3.3: what a pin there may touch and how tall it may be.
+/// Nothing where no part lies above the point eps inside the foot.
+std::optional<PinHeight> probe(const Patch& part, const model::PinStock& pins, const Foot& foot) {
+  const auto edge = part.lowest_above(foot.p_PFoot_mm + model::kEps_mm * foot.n_P);
+  if (!edge) return std::nullopt;
   const Sweep large = disc(axis_mm(pins, foot), pins.radius_mm + model::kEps_mm);
   const Sweep small = disc(axis_mm(pins, foot), pins.radius_mm - model::kEps_mm);
   PinHeight pin;
+  pin.z_edge_mm = edge->point_mm.z();
   pin.contact_min_mm = part.lowest_z_mm(large);
   pin.height_max_mm = part.lowest_z_mm(small);
   // BB starts down-large eps under the ceiling, so that the ceiling itself is no contact.
@@ -79,21 +83,18 @@ model::Interval top_mm(const PinHeight& pin, const model::PinStock& pins) {
 }  // namespace
 
 std::optional<TopRange> top_range(const Surface& part, const model::PinStock& pins, const Foot& foot) {
-  const Patch patch = around(part, pins, foot);
-  const auto edge = patch.lowest_above(foot.p_PFoot_mm + model::kEps_mm * foot.n_P);
-  if (!edge) return std::nullopt;
-  PinHeight pin = probe(patch, pins, foot);
-  pin.z_edge_mm = edge->point_mm.z();
-  return TopRange{pin.z_edge_mm, top_mm(pin, pins)};
+  const auto pin = probe(around(part, pins, foot), pins, foot);
+  if (!pin) return std::nullopt;
+  return TopRange{pin->z_edge_mm, top_mm(*pin, pins)};
 }
 
 PinHeightOutcome pin_height(const Surface& part, const model::PinStock& pins, double plate_top_mm,
                             const Foot& foot) {
   const Patch patch = around(part, pins, foot);
-  const auto edge = patch.lowest_above(foot.p_PFoot_mm + model::kEps_mm * foot.n_P);
-  if (!edge) return tl::unexpected(HeightLoss::NoSurfaceAtFoot);
-  PinHeight pin = probe(patch, pins, foot);
-  pin.z_edge_mm = touched_mm(part, foot, edge->point_mm.z());
+  const auto probed = probe(patch, pins, foot);
+  if (!probed) return tl::unexpected(HeightLoss::NoSurfaceAtFoot);
+  PinHeight pin = *probed;
+  pin.z_edge_mm = touched_mm(part, foot, pin.z_edge_mm);
   const auto [least_mm, most_mm] = top_mm(pin, pins);
   if (most_mm < least_mm) return tl::unexpected(HeightLoss::NoEngagement);
 

@@ -68,12 +68,6 @@ class Stands {
   }
 
  private:
-  static std::vector<geometry::Surface> others_of(const Scene& scene) {
-    std::vector<geometry::Surface> others = scene.attached;
-    others.insert(others.end(), scene.obstacles.begin(), scene.obstacles.end());
-    return others;
-  }
-
   const model::Kit& kit_;
   std::vector<geometry::Surface> others_;
   double plate_top_mm_;

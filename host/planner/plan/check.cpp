@@ -16,6 +16,7 @@
 #include "host/planner/plan/check_certified.hpp"
 #include "host/planner/plan/check_robust.hpp"
 #include "host/planner/plan/check_tolerances.hpp"
+#include "host/planner/plan/claim_list.hpp"
 #include "host/planner/plan/design_names.hpp"
 #include "host/planner/plan/pin_places.hpp"
 
@@ -29,27 +30,7 @@ using geometry::Vector3d;
 constexpr double kLengthTolMm = 1e-6;  // chosen: plans state lengths to the last bit; poses lose some 1e-13
 constexpr double kHeightTolMm = 1e-4;  // chosen: a foot moved by kLengthTolMm on a steep facet
 
-/// Collects claims about one design.
-class Report {
- public:
-  explicit Report(std::string subject) : subject_(std::move(subject)) {}
-
-  void claim(std::string what, bool holds, std::string found = {}) {
-    claims_.push_back({subject_, std::move(what), holds, holds ? std::string() : std::move(found)});
-  }
-  void equal(const std::string& what, double stated, double recomputed, double tolerance) {
-    const bool holds =
-        std::abs(stated - recomputed) <= tolerance || (std::isinf(stated) && stated == recomputed);
-    claim(what, holds, fmt::format("stated {:.9g}, recomputed {:.9g}", stated, recomputed));
-  }
-  std::vector<Claim> take() { return std::move(claims_); }
-
- private:
-  std::string subject_;
-  std::vector<Claim> claims_;
-};
-
-void check_holes(const Plan& plan, const model::Design& design, Report& report) {
+void check_holes(const Plan& plan, const model::Design& design, ClaimList& report) {
   const model::Kit& kit = plan.kit;
   std::set<model::Hole> holes;
   bool in_range = true;
@@ -92,7 +73,7 @@ void check_holes(const Plan& plan, const model::Design& design, Report& report) 
                model::open_separation_mm(kit.jaws, design.jaw_separation_mm), kLengthTolMm);
 }
 
-void check_contacts(const Plan& plan, const Scene& scene, const model::Design& design, Report& report) {
+void check_contacts(const Plan& plan, const Scene& scene, const model::Design& design, ClaimList& report) {
   for (const model::PinDesign& pin : design.pins) {
     const std::string name = "pin " + name_of(pin.hole);
     const Vector2d axis_mm = model::p_GHole_mm(plan.kit.grid, pin.hole, design.jaw_separation_mm);
@@ -171,15 +152,14 @@ PlanarFixture fixture_of(const Plan& plan, const model::Design& design) {
   return fixture;
 }
 
-void check_loading(const Plan& plan, const Scene& scene, const model::Design& design, Report& report) {
+void check_loading(const Plan& plan, const Scene& scene, const model::Design& design, ClaimList& report) {
   const PlanarFixture fixture = fixture_of(plan, design);
   std::array<PinToLoad, 4> pins;
   for (std::size_t i = 0; i < pins.size(); ++i) {
     const model::PinDesign& pin = design.pins[i];
     pins[i] = {i, pin.length_mm, pin.top_z_mm, pin.contact_z_mm};
   }
-  std::vector<geometry::Surface> others = scene.attached;
-  others.insert(others.end(), scene.obstacles.begin(), scene.obstacles.end());
+  const std::vector<geometry::Surface> others = others_of(scene);
   const Surroundings surroundings{&scene.turned.surface, others,
                                   plate_top_mm(plan.kit, scene.turned.surface, scene.attached)};
   const LoadingOptions options{plan.loading_2d ? SweepHeights::Infinite : SweepHeights::Pins,
@@ -202,7 +182,7 @@ void check_loading(const Plan& plan, const Scene& scene, const model::Design& de
 /// The contact forces under the critical load are in equilibrium with it, inside friction, and squeeze as
 /// stated.
 void check_balance(const Grasp& grasp, const model::Design& design, const model::Wrench& wrench,
-                   model::FrictionModel model, SqueezeSolver& solver, Report& report) {
+                   model::FrictionModel model, SqueezeSolver& solver, ClaimList& report) {
   const auto forces = solver.balancing_forces_n(wrench, model);
   report.claim("contact forces balance the critical load", forces.has_value(), "none were found");
   if (!forces) return;
@@ -230,7 +210,7 @@ void check_balance(const Grasp& grasp, const model::Design& design, const model:
                kForceTolN);
 }
 
-void check_force(const Plan& plan, const model::Design& design, Report& report) {
+void check_force(const Plan& plan, const model::Design& design, ClaimList& report) {
   const Grasp grasp = grasp_of(design, plan.friction);
   report.claim("no contact jams", !jamming_contact(grasp).has_value(), "one cannot be closed by sliding");
   report.claim("neither jaw wedges the part", !wedging_jaw(grasp).has_value(), "one does alone");
@@ -269,7 +249,7 @@ bool ids_are_unique(const Plan& plan) {
 }
 
 /// What each phase lost is what it let through less than it was given.
-void check_losses(const Plan& plan, Report& report) {
+void check_losses(const Plan& plan, ClaimList& report) {
   const Funnel& f = plan.funnel;
   const std::vector<std::tuple<std::string, std::int64_t, std::int64_t>> phases = {
       {"heights", f.planar, f.heights}, {"loading", f.heights, f.loadable}, {"force", f.loadable, f.strong}};
@@ -298,7 +278,7 @@ bool in_order(const Plan& plan) {
 }  // namespace
 
 std::vector<Claim> check_plan(const Plan& plan, const Scene& scene) {
-  Report report("");
+  ClaimList report("");
   report.claim("the part's file is the one that was planned", plan.part.sha256 == scene.part.sha256,
                "its SHA-256 is " + scene.part.sha256);
   report.claim("the designs come in the order of their rank", in_order(plan), "they do not");
@@ -319,7 +299,7 @@ std::vector<Claim> check_plan(const Plan& plan, const Scene& scene) {
 }
 
 std::vector<Claim> check_design(const Plan& plan, const Scene& scene, const model::Design& design) {
-  Report report(design.id);
+  ClaimList report(design.id);
   check_holes(plan, design, report);
   if (design.pins.size() != 4) return report.take();
   check_contacts(plan, scene, design, report);

@@ -55,6 +55,12 @@ geometry::Surface turned_surface(part::Part part, geometry::Surface surface, mod
 
 }  // namespace
 
+std::vector<geometry::Surface> others_of(const Scene& scene) {
+  std::vector<geometry::Surface> others = scene.attached;
+  others.insert(others.end(), scene.obstacles.begin(), scene.obstacles.end());
+  return others;
+}
+
 base::Expected<Scene> read_scene(const model::Task& task) {
   std::vector<part::ExactBody> bodies;
   auto part = read(bodies, {task.part, {}, pose_of({}, task.side)});

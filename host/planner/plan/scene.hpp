@@ -20,6 +20,9 @@ struct Scene {
   std::vector<part::ExactBody> bodies{};
 };
 
+/// All that the pins must keep clear of beside the part: attached solids, then obstacles.
+std::vector<geometry::Surface> others_of(const Scene& scene);
+
 /// Reads the part, what is attached to it and the obstacles of a task. Attached solids that do not stand with
 /// the part must be given in the part's own file axes.
 base::Expected<Scene> read_scene(const model::Task& task);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "host/geometry/curve_foot.hpp"
 #include "host/planner/planar/constants.hpp"
 
 namespace pinjaw::planner::planar {
@@ -111,27 +112,12 @@ bool Judge::feet_hold(const std::array<Touch, 4>& touches, const std::array<Cont
 }
 
 double Judge::foot_along_mm(const ContactCurve& curve, const Vector2d& q_mm) const {
-  const geometry::Curve& source = features_[static_cast<std::size_t>(curve.feature)].curve;
-  const double length_mm = geometry::length_mm(source);
-  if (const auto* segment = std::get_if<geometry::Segment>(&source)) {
-    return std::clamp(curve.tangent.dot(q_mm - segment->a_mm), 0.0, length_mm);
-  }
-  const auto& arc = std::get<geometry::Arc>(source);
-  const Vector2d radial = q_mm - arc.center_mm;
-  const double at_mm =
-      arc.radius_mm * geometry::wrapped_rad(std::atan2(radial.y(), radial.x()) - arc.from_rad);
-  if (at_mm <= length_mm) return at_mm;
-  const double turn_mm = 2 * std::numbers::pi * arc.radius_mm;
-  return turn_mm - at_mm < at_mm - length_mm ? 0.0 : length_mm;
+  return geometry::nearest_along_mm(features_[static_cast<std::size_t>(curve.feature)].curve, q_mm);
 }
 
 double Judge::foot_margin_mm(const ContactCurve& curve, const Vector2d& q_mm) const {
-  const geometry::Curve& source = features_[static_cast<std::size_t>(curve.feature)].curve;
-  const double length_mm = geometry::length_mm(source);
-  const auto* arc = std::get_if<geometry::Arc>(&source);
-  if (arc != nullptr && arc->sweep_rad > 2 * std::numbers::pi - 1e-9) return length_mm / 2;
-  const double at_mm = foot_along_mm(curve, q_mm);
-  return std::min(at_mm, length_mm - at_mm);
+  return geometry::end_margin_mm(features_[static_cast<std::size_t>(curve.feature)].curve,
+                                 foot_along_mm(curve, q_mm));
 }
 
 }  // namespace pinjaw::planner::planar

@@ -9,11 +9,7 @@
 namespace pinjaw::planner {
 
 Around around(const model::Kit& kit, const Scene& scene) {
-  Around around;
-  around.others = scene.attached;
-  around.others.insert(around.others.end(), scene.obstacles.begin(), scene.obstacles.end());
-  around.plate_top_mm = plate_top_mm(kit, scene.turned.surface, scene.attached);
-  return around;
+  return {others_of(scene), plate_top_mm(kit, scene.turned.surface, scene.attached)};
 }
 
 LoadingOptions loading_options(const PlanOptions& options) {

@@ -28,8 +28,7 @@ constexpr std::size_t kScanned = 1;  // fixtures that the scan is asked of: it t
 struct Stand {
   explicit Stand(const std::string& task_name) : shipped(task_name) {
     const planner::Scene& scene = shipped.scene;
-    others = scene.attached;
-    others.insert(others.end(), scene.obstacles.begin(), scene.obstacles.end());
+    others = planner::others_of(scene);
     plate_top_mm = planner::plate_top_mm(shipped.task.kit, scene.turned.surface, scene.attached);
     planner::PlanarOptions options;
     options.twins = planner::Twins::Once;
