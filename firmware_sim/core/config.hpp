@@ -2,6 +2,8 @@
 
 #include <cstdint>
 
+#include "firmware_sim/core/state_table.hpp"
+
 namespace pinjaw::core {
 
 /// What one controller's hardware is and can do, in the integers the core decides with. It never changes
@@ -35,8 +37,13 @@ struct Config {
   std::int32_t ramp_dn_per_ms = 5;  ///< section 3: at most 0.5 N/ms
   std::int32_t hold_band_dn = 10;   ///< chosen: half the dead band while holding, several times sensor noise
 
+  /// The state machine; tests hand in mistaken ones.
+  const StateTable* table = &kStateTable;
+
   /// For tests only: shows that the guard, and nothing else, keeps the force in its limits.
   bool force_guard_enabled = true;
+  /// For tests only: shows what the other channel does alone.
+  bool release_guard_enabled = true;
 };
 
 }  // namespace pinjaw::core

@@ -195,7 +195,7 @@ Decision decide(const State& state, const wire::Command& command) {
   if (command.op == wire::Op::Arm) decision = decide_arm(state, command);
   if (command.op == wire::Op::ClearFault) decision = decide_clear_fault(state);
   if (!is_ok(decision.answer)) return decision;
-  if (reaction(state.id, decision.event).kind == ReactionKind::Refused) {
+  if (reaction(*state.config.table, state.id, decision.event).kind == ReactionKind::Refused) {
     return {{CommandResult::BadState, Reason::WrongState}, decision.event};
   }
   decision.answer = check(state, command);

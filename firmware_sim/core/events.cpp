@@ -150,7 +150,7 @@ Occurrence by_state(const State& state) {
 }
 
 bool moves(const State& state, Event event) {
-  return reaction(state.id, event).kind == ReactionKind::Go;
+  return reaction(*state.config.table, state.id, event).kind == ReactionKind::Go;
 }
 
 bool giver_stale(const State& state) {

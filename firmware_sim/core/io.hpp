@@ -45,6 +45,15 @@ enum class Custody : std::uint8_t {
   Retained = 6,  ///< sole again; `token` is burned and its peer may open
 };
 
+/// How a handoff ended that this node gave in.
+struct Outcome {
+  bool retained = false;  ///< else released
+  std::uint8_t peer = 0;  ///< 0: none
+  std::uint16_t token = 0;
+  std::uint16_t pair = 0;
+  friend bool operator==(const Outcome&, const Outcome&) = default;
+};
+
 /// The record that survives a power cut; written whole.
 struct NvmRecord {
   Custody custody = Custody::Empty;
@@ -58,6 +67,7 @@ struct NvmRecord {
   std::uint16_t boot_count = 0;
   std::uint16_t seen_givers = 0;               ///< bit n: a token of node n was accepted before
   std::array<std::uint16_t, 16> last_token{};  ///< the last one of each giver (R8)
+  std::array<Outcome, 4> outcomes{};           ///< of the last tokens, the newest first (R10)
   friend bool operator==(const NvmRecord&, const NvmRecord&) = default;
 };
 
@@ -88,12 +98,20 @@ struct NvmStatus {
   bool failed = false;     ///< a request could not be stored
 };
 
+/// What the CAN controller says of itself.
+struct BusHealth {
+  bool off = false;            ///< bus-off: nothing is sent or received
+  bool passive = false;        ///< error passive
+  std::uint32_t overruns = 0;  ///< receive overruns since power on
+};
+
 /// Everything a controller learns in one step.
 struct Inputs {
   std::uint32_t elapsed_ms = 1;
   std::span<const wire::Frame> received{};  ///< since the last step, in order of arrival
   Sensors sensors;
   NvmStatus nvm;
+  BusHealth bus{};
 };
 
 /// Frames to send, in order; what does not fit is counted in State::counters.
@@ -109,6 +127,7 @@ struct Outputs {
   SendQueue send;
   Valves valves;
   std::optional<NvmWrite> nvm;
+  bool restart_bus = false;  ///< lets the CAN controller recover from bus-off
 };
 
 }  // namespace pinjaw::core

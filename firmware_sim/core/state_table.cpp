@@ -3,13 +3,10 @@
 namespace pinjaw::core {
 namespace {
 
-// Re: refused, Ig: ignored, St: stays and may act; else the next state.
-enum Cell : std::uint8_t { Bt, Rc, Un, Ld, Rd, Sg, Sd, Sq, Tk, Hd, Of, Rx, Rs, Op, Fh, Fe, Re, Ig, St };
-
-using Row = std::array<Cell, kStates>;
-
 // clang-format off
-constexpr std::array<Row, kEvents> kTable = {{
+consteval StateTable rows() {
+  using enum Cell;
+  return {{
     //                           Bt  Rc  Un  Ld  Rd  Sg  Sd  Sq  Tk  Hd  Of  Rx  Rs  Op  Fh  Fe
     /* CmdHold               */ {St, St, St, St, St, St, St, Sd, St, St, Hd, Rs, St, St, St, St},
     /* CmdWrite              */ {Re, Re, St, St, Ld, Re, Re, Re, Re, Re, Re, Re, Re, Re, Re, Re},
@@ -59,10 +56,18 @@ constexpr std::array<Row, kEvents> kTable = {{
     /* PeerWatched           */ {Ig, Ig, Ig, Ig, Ig, Ig, Ig, Ig, Ig, Ig, Ig, Op, Ig, Ig, Ig, Ig},
     /* PeerDoubted           */ {Ig, Ig, Ig, Ig, Ig, Ig, Ig, Ig, Ig, Ig, Ig, Rs, Ig, Ig, Ig, Ig},
     /* OfferUnanswered       */ {Ig, Ig, Ig, Ig, Ig, Ig, Ig, Ig, Ig, Ig, Hd, Ig, Ig, Ig, Ig, Ig},
-}};
+  }};
+}
 // clang-format on
 
+}  // namespace
+
+constexpr StateTable kStateTable = rows();
+
+namespace {
+
 constexpr Reaction reaction_of(Cell cell, StateId state) {
+  using enum Cell;
   switch (cell) {
     case Re:
       return {ReactionKind::Refused, state};
@@ -75,8 +80,8 @@ constexpr Reaction reaction_of(Cell cell, StateId state) {
   }
 }
 
-constexpr Reaction look_up(StateId state, Event event) {
-  return reaction_of(kTable[static_cast<std::size_t>(event)][static_cast<std::size_t>(state)], state);
+constexpr Reaction look_up(const StateTable& table, StateId state, Event event) {
+  return reaction_of(table[static_cast<std::size_t>(event)][static_cast<std::size_t>(state)], state);
 }
 
 /// Whether `rule(state, event, reaction)` is true of the whole table.
@@ -86,7 +91,7 @@ consteval bool everywhere(Rule rule) {
     for (std::size_t e = 0; e < kEvents; ++e) {
       const auto state = static_cast<StateId>(s);
       const auto event = static_cast<Event>(e);
-      if (!rule(state, event, look_up(state, event))) return false;
+      if (!rule(state, event, look_up(kStateTable, state, event))) return false;
     }
   }
   return true;
@@ -151,8 +156,8 @@ static_assert(everywhere([](StateId state, Event, Reaction r) {
 
 }  // namespace
 
-Reaction reaction(StateId state, Event event) {
-  return look_up(state, event);
+Reaction reaction(const StateTable& table, StateId state, Event event) {
+  return look_up(table, state, event);
 }
 
 }  // namespace pinjaw::core

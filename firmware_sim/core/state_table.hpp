@@ -81,8 +81,18 @@ struct Reaction {
   friend bool operator==(const Reaction&, const Reaction&) = default;
 };
 
+/// One place of the table. Re: refused, Ig: ignored, St: stays and may act; else the next state, in StateId's
+/// order.
+enum class Cell : std::uint8_t { Bt, Rc, Un, Ld, Rd, Sg, Sd, Sq, Tk, Hd, Of, Rx, Rs, Op, Fh, Fe, Re, Ig, St };
+
+/// A row for each event, a column for each state.
+using StateTable = std::array<std::array<Cell, kStates>, kEvents>;
+
+/// The table that controllers work by; the compiler checks its safety rules.
+extern const StateTable kStateTable;
+
 /// Total: defined for every pair.
-Reaction reaction(StateId state, Event event);
+Reaction reaction(const StateTable& table, StateId state, Event event);
 
 /// I2: a node in such a state answers for its part and never opens on its own.
 constexpr bool holds(StateId state) {

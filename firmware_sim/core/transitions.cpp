@@ -251,7 +251,7 @@ void stay(State& state, Event event) {
 
 bool apply(State& state, Event event) {
   const StateId from = state.id;
-  const Reaction what = reaction(from, event);
+  const Reaction what = reaction(*state.config.table, from, event);
   if (what.kind == ReactionKind::Ignored) ++state.counters.events_ignored;
   if (what.kind == ReactionKind::Refused) ++state.counters.events_refused;
   if (what.kind == ReactionKind::Ignored || what.kind == ReactionKind::Refused) return false;

@@ -106,7 +106,7 @@ void for_every_pair(Visit visit) {
 
 TEST(StateTable, has_every_row_of_the_specification) {
   for (const Row& row : specified()) {
-    const Reaction what = reaction(row.state, row.event);
+    const Reaction what = reaction(kStateTable, row.state, row.event);
     EXPECT_EQ(what.kind, ReactionKind::Go)
         << wire::to_string(row.state) << " " << static_cast<int>(row.event);
     EXPECT_EQ(what.next, row.next) << wire::to_string(row.state) << " " << static_cast<int>(row.event);
@@ -115,7 +115,7 @@ TEST(StateTable, has_every_row_of_the_specification) {
 
 TEST(StateTable, changes_state_for_nothing_else) {
   for_every_pair([](StateId state, Event event) {
-    const bool goes = reaction(state, event).kind == ReactionKind::Go;
+    const bool goes = reaction(kStateTable, state, event).kind == ReactionKind::Go;
     EXPECT_EQ(goes, find(state, event) != nullptr)
         << wire::to_string(state) << " by event " << static_cast<int>(event);
   });
@@ -123,7 +123,7 @@ TEST(StateTable, changes_state_for_nothing_else) {
 
 TEST(StateTable, refuses_every_command_that_is_not_listed) {
   for_every_pair([](StateId state, Event event) {
-    const ReactionKind kind = reaction(state, event).kind;
+    const ReactionKind kind = reaction(kStateTable, state, event).kind;
     if (is_command(event)) {
       EXPECT_NE(kind, ReactionKind::Ignored) << wire::to_string(state) << " " << static_cast<int>(event);
     } else {
