@@ -1,3 +1,4 @@
+// Promises: SIM.
 // The program itself: what it prints where, and its exit codes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

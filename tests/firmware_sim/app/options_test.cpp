@@ -1,3 +1,4 @@
+// Promises: SIM.
 #include "firmware_sim/app/options.hpp"
 
 #include <gmock/gmock.h>

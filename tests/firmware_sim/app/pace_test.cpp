@@ -1,3 +1,4 @@
+// Promises: SIM.
 #include "firmware_sim/app/pace.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Promises: SIM.
 // pinjaw-jaw as a process on a real vcan0: a host takes it through a hold over SocketCAN and dies, and the
 // world's socket tells the truth. Times are never asserted.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Promises: I4.
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 

@@ -1,3 +1,4 @@
+// Promises: I1, I5.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Promises: I2, R2, R4, R8.
 #include <gtest/gtest.h>
 
 #include "tests/firmware_sim/core/bench.hpp"

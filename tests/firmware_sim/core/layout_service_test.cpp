@@ -1,3 +1,4 @@
+// Promises: TRANSFER, I8.
 #include <gtest/gtest.h>
 
 #include <deque>

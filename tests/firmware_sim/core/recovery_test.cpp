@@ -1,3 +1,4 @@
+// Promises: R1, R5, R6, I7.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Promises: I3, R7, R8, R9, MANUAL.
 #include <gtest/gtest.h>
 
 #include "tests/firmware_sim/core/bench.hpp"

@@ -1,3 +1,4 @@
+// Promises: I6, I5.
 #include <gtest/gtest.h>
 
 #include "tests/firmware_sim/core/bench.hpp"

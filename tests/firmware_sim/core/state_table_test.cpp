@@ -1,3 +1,4 @@
+// Promises: T-TABLE, R3, R6, R9.
 #include "firmware_sim/core/state_table.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Promises: TELEMETRY, I9.
 #include <gtest/gtest.h>
 
 #include <map>

@@ -1,3 +1,4 @@
+// Promises: SIM.
 #include "firmware_sim/node/fault_spec.hpp"
 
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// Promises: SIM.
 #include "firmware_sim/node/figures.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Promises: I1.
 // Invariant I1: what the guard promises of the true force, and that it is the guard that keeps it.
 #include <gtest/gtest.h>
 

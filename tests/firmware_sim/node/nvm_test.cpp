@@ -1,3 +1,4 @@
+// Promises: I7.
 #include "firmware_sim/node/nvm.hpp"
 
 #include <gtest/gtest.h>

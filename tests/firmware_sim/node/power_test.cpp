@@ -1,3 +1,4 @@
+// Promises: I7.
 #include <gtest/gtest.h>
 
 #include "tests/firmware_sim/support/test_cell.hpp"

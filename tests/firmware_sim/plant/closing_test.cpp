@@ -1,3 +1,4 @@
+// Promises: PLANT.
 #include <gtest/gtest.h>
 
 #include "tests/firmware_sim/plant/stand.hpp"

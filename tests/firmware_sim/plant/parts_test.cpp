@@ -1,3 +1,4 @@
+// Promises: PLANT.
 #include <gtest/gtest.h>
 
 #include <cmath>

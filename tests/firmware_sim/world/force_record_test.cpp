@@ -1,3 +1,4 @@
+// Promises: WORLD.
 #include "firmware_sim/world/force_record.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Promises: I2.
 // Whole handoffs: firmware, air, bus and world together, by a host that only speaks frames.
 #include <gtest/gtest.h>
 

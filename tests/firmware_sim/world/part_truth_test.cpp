@@ -1,3 +1,4 @@
+// Promises: WORLD.
 #include "firmware_sim/world/part_truth.hpp"
 
 #include <gtest/gtest.h>

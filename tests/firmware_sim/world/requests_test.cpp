@@ -1,3 +1,4 @@
+// Promises: WORLD.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// Promises: SIM.
 #include <gtest/gtest.h>
 
 #include <ctime>

@@ -1,3 +1,4 @@
+// Promises: CODEC.
 #include "protocol/wire/codec.hpp"
 
 #include <gtest/gtest.h>

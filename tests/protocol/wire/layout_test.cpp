@@ -1,3 +1,4 @@
+// Promises: TRANSFER, I8.
 #include "protocol/wire/layout.hpp"
 
 #include <gtest/gtest.h>

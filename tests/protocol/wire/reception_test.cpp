@@ -1,3 +1,4 @@
+// Promises: I4.
 #include "protocol/wire/reception.hpp"
 
 #include <gtest/gtest.h>

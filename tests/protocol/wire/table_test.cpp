@@ -1,3 +1,4 @@
+// Promises: CODEC.
 #include "protocol/wire/table.hpp"
 
 #include <gtest/gtest.h>

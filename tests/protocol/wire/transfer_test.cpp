@@ -1,3 +1,4 @@
+// Promises: TRANSFER.
 #include "protocol/wire/transfer.hpp"
 
 #include <gtest/gtest.h>
