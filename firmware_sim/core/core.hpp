@@ -17,8 +17,12 @@ namespace pinjaw::core {
 /// State after a reset; the valves stay de-energised until the first steps have looked at sensors and record.
 /// With a custody record the controller comes up holding, never open.
 State power_on(const Config& config, const NvmImage& image);
+/// The same in place, for who has no stack to spare. `state` is one as its default makes it.
+void power_on(const Config& config, const NvmImage& image, State& state);
 
 /// One step. Equal state and inputs give equal outputs and next state.
 Outputs step(State& state, const Inputs& inputs);
+/// The same in place: `outputs` is overwritten, but for frames beyond its size.
+void step(State& state, const Inputs& inputs, Outputs& outputs);
 
 }  // namespace pinjaw::core

@@ -14,15 +14,18 @@ void acknowledge(Store& store, const NvmStatus& status) {
   store.failed = status.failed && status.done != store.requested;
 }
 
-std::optional<NvmWrite> flush(Store& store, const LayoutBlob& committed) {
-  if (!store.record_waits && !store.layout_waits) return std::nullopt;
-  NvmWrite write;
-  write.sequence = ++store.requested;
-  if (store.record_waits) write.record = store.record;
-  if (store.layout_waits) write.layout = committed;
+void flush(Store& store, const wire::Layout& committed, std::optional<NvmWrite>& write) {
+  if (!store.record_waits && !store.layout_waits) return write.reset();
+  write.emplace().sequence = ++store.requested;
+  if (store.record_waits) write->record = store.record;
+  if (store.layout_waits) {
+    LayoutBlob& blob = write->layout.emplace();
+    wire::ByteWriter out(blob.bytes);
+    wire::encode(committed, out);
+    blob.size = static_cast<std::uint16_t>(out.used());
+  }
   store.record_waits = false;
   store.layout_waits = false;
-  return write;
 }
 
 void announce(State& state) {

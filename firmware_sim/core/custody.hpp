@@ -14,8 +14,8 @@ void save(Store& store, const NvmRecord& record);
 /// Takes in how far storing has come.
 void acknowledge(Store& store, const NvmStatus& status);
 
-/// What must be stored now, if anything; to be called once a step.
-std::optional<NvmWrite> flush(Store& store, const LayoutBlob& committed);
+/// Puts into `write` what must be stored now, if anything; to be called once a step.
+void flush(Store& store, const wire::Layout& committed, std::optional<NvmWrite>& write);
 
 /// Says the fact that the record now stands for, if it may be said: a fact is announced only when its record
 /// is safe, and TAKE and RETAIN only once the own hold was good (R2, R5).

@@ -177,7 +177,8 @@ void track_hold(State& state, std::uint16_t elapsed_ms) {
   const bool answers = holds(state.id) && state.id != StateId::FaultHold && state.id != StateId::Recover;
   const bool bad = answers && !holds_enough(state);
   state.bad_hold_ms =
-      bad ? static_cast<std::uint8_t>(std::min(state.bad_hold_ms + elapsed_ms, 100)) : std::uint8_t{0};
+      bad ? static_cast<std::uint8_t>(std::min<std::int32_t>(state.bad_hold_ms + elapsed_ms, 100))
+          : std::uint8_t{0};
   if (answers && hold_is_stable(state)) {
     state.hold_proven = true;
     state.faults.clear(wire::FaultCode::HoldLost);

@@ -24,7 +24,7 @@ void follow_ramp(const State& state, std::int32_t set_dn, std::int32_t elapsed_m
 void integrate(const State& state, std::int32_t error_dn, std::int32_t elapsed_ms, ForceControl& control) {
   if (error_dn > kIntegralWindow_dn || error_dn < -kIntegralWindow_dn) return;
   const std::int64_t error_ubar =
-      std::int64_t{error_dn} * 1'000'000'000 / std::max(state.config.area_udn_per_mbar, 1);
+      std::int64_t{error_dn} * 1'000'000'000 / std::max<std::int32_t>(state.config.area_udn_per_mbar, 1);
   const std::int64_t sum_ubar = control.integral_ubar + error_ubar * elapsed_ms / kIntegral_ms;
   control.integral_ubar =
       static_cast<std::int32_t>(std::clamp<std::int64_t>(sum_ubar, -kIntegralMost_ubar, kIntegralMost_ubar));
@@ -79,7 +79,7 @@ Valves regulate(State& state, std::int32_t set_dn, std::int32_t elapsed_ms) {
   valves.spool = control.flow == Flow::Shut ? Spool::Hold : Spool::Close;
   valves.close_set_mbar = aim_mbar;
   if (!valves.relax) valves.close_set_mbar += state.config.check_cracking_mbar + control.integral_ubar / 1000;
-  valves.close_set_mbar = std::clamp(valves.close_set_mbar, 0, state.config.pressure_max_mbar);
+  valves.close_set_mbar = std::clamp<std::int32_t>(valves.close_set_mbar, 0, state.config.pressure_max_mbar);
   return valves;
 }
 
@@ -136,12 +136,13 @@ std::int32_t force_set_dn(const State& state) {
     default:
       return 0;
   }
-  return std::clamp(set_dn, 0, std::max(force_limit_dn(state) - state.config.uncertainty_dn, 0));
+  const std::int32_t most_dn = force_limit_dn(state) - state.config.uncertainty_dn;
+  return std::clamp<std::int32_t>(set_dn, 0, std::max<std::int32_t>(most_dn, 0));
 }
 
 Valves wanted_valves(State& state, std::uint32_t elapsed_ms) {
   if (state.config.passive) return Valves{};
-  const auto ms = static_cast<std::int32_t>(std::min(elapsed_ms, 1000U));
+  const auto ms = static_cast<std::int32_t>(std::min<std::uint32_t>(elapsed_ms, 1000));
   switch (state.id) {
     case StateId::Ready:
       return open_while_permitted(state);

@@ -1,6 +1,5 @@
 #include "firmware_sim/core/layout_service.hpp"
 
-#include <algorithm>
 #include <optional>
 #include <span>
 
@@ -13,10 +12,6 @@ namespace {
 
 using wire::TransferStatus;
 
-std::span<const std::uint8_t> bytes_of(const LayoutBlob& blob) {
-  return std::span(blob.bytes).first(blob.size);
-}
-
 wire::LayoutTarget target_of(const Config& config) {
   return {.node = config.node,
           .node_class = config.passive ? wire::NodeClass::Passive : wire::NodeClass::Gripper,
@@ -25,79 +20,73 @@ wire::LayoutTarget target_of(const Config& config) {
           .f_uncertainty_dn = static_cast<std::uint16_t>(config.uncertainty_dn)};
 }
 
-void take_up_layout(State& state, const wire::Layout& layout, const LayoutBlob& blob) {
+void take_up_layout(State& state) {
   state.layouts.committed = true;
-  state.layouts.layout = layout;
-  state.layouts.crc = wire::layout_crc_of(layout);
-  state.layouts.blob = blob;
-  state.layouts.staged.size = 0;
-  state.peers.follow(layout);
+  state.layouts.is_staged = false;
+  state.layouts.layout = state.layouts.staged;
+  state.layouts.crc = wire::layout_crc_of(state.layouts.layout);
+  state.peers.follow(state.layouts.layout);
 }
 
-/// An answer under construction.
+/// An answer under construction, in the room of the sender.
 class ServiceAnswer {
  public:
-  ServiceAnswer(std::uint8_t service, std::uint8_t transaction, TransferStatus status) : out_(bytes_) {
+  ServiceAnswer(State& state, std::uint8_t service, std::uint8_t transaction, TransferStatus status)
+      : sender_(state.service.sender), out_(sender_.compose()) {
     out_.put(service | wire::kResponseBit, 1);
     out_.put(transaction, 1);
     out_.put(static_cast<std::uint8_t>(status), 1);
   }
   wire::ByteWriter& body() { return out_; }
-  void start(wire::TransferSender& sender) const { sender.start(std::span(bytes_).first(out_.used())); }
+  void start() const { sender_.start(out_.used()); }
 
  private:
-  std::array<std::uint8_t, wire::kMaxTransferBytes> bytes_{};
+  wire::TransferSender& sender_;
   wire::ByteWriter out_;
 };
 
 void answer_status(State& state, std::uint8_t service, std::uint8_t transaction, TransferStatus status) {
-  ServiceAnswer(service, transaction, status).start(state.service.sender);
+  ServiceAnswer(state, service, transaction, status).start();
 }
 
 void answer_commit(State& state, std::uint8_t transaction) {
-  ServiceAnswer answer(static_cast<std::uint8_t>(wire::Service::Commit), transaction, TransferStatus::Ok);
+  ServiceAnswer answer(state, static_cast<std::uint8_t>(wire::Service::Commit), transaction,
+                       TransferStatus::Ok);
   answer.body().put(state.layouts.crc, 4);
-  answer.start(state.service.sender);
+  answer.start();
 }
 
 TransferStatus write(State& state, std::span<const std::uint8_t> body) {
   if (!apply(state, Event::CmdWrite)) return TransferStatus::WrongState;
-  state.layouts.staged.size = 0;
-  const auto layout = wire::decode_layout(body);
-  if (!layout) return layout.error();
-  std::copy(body.begin(), body.end(), state.layouts.staged.bytes.begin());
-  state.layouts.staged.size = static_cast<std::uint16_t>(body.size());
-  return TransferStatus::Ok;
+  const TransferStatus status = wire::decode_layout(body, state.layouts.staged);
+  state.layouts.is_staged = status == TransferStatus::Ok;
+  return status;
 }
 
 /// Ok where the layout is now being stored, or was committed already.
 TransferStatus commit(State& state, std::uint32_t crc) {
-  const LayoutBlob& staged = state.layouts.staged;
-  if (staged.size == 0) {
-    const bool again = state.layouts.committed && state.layouts.crc == crc;
+  const Layouts& layouts = state.layouts;
+  if (!layouts.is_staged) {
+    const bool again = layouts.committed && layouts.crc == crc;
     return again ? TransferStatus::Ok : TransferStatus::NothingStaged;
   }
-  const auto layout = wire::decode_layout(bytes_of(staged));
-  if (!layout) return layout.error();
-  if (wire::layout_crc_of(*layout) != crc) return TransferStatus::CommitDiffers;
-  const TransferStatus status = wire::admissible(*layout, target_of(state.config));
+  if (wire::layout_crc_of(layouts.staged) != crc) return TransferStatus::CommitDiffers;
+  const TransferStatus status = wire::admissible(layouts.staged, target_of(state.config));
   if (status != TransferStatus::Ok) {
     state.faults.note(wire::FaultCode::LayoutRefused);
     return status;
   }
   if (!apply(state, Event::CmdCommit)) return TransferStatus::WrongState;
-  take_up_layout(state, *layout, LayoutBlob(staged));
+  take_up_layout(state);
   state.store.layout_waits = true;
   return TransferStatus::Ok;
 }
 
 void serve_write(State& state, std::uint8_t transaction, std::span<const std::uint8_t> body) {
   const TransferStatus status = write(state, body);
-  ServiceAnswer answer(static_cast<std::uint8_t>(wire::Service::Write), transaction, status);
-  if (status == TransferStatus::Ok) {
-    answer.body().put(wire::layout_crc_of(*wire::decode_layout(body)), 4);
-  }
-  answer.start(state.service.sender);
+  ServiceAnswer answer(state, static_cast<std::uint8_t>(wire::Service::Write), transaction, status);
+  if (status == TransferStatus::Ok) answer.body().put(wire::layout_crc_of(state.layouts.staged), 4);
+  answer.start();
 }
 
 void serve_commit(State& state, std::uint8_t transaction, std::span<const std::uint8_t> body) {
@@ -114,17 +103,17 @@ void serve_commit(State& state, std::uint8_t transaction, std::span<const std::u
 
 void serve_readback(State& state, std::uint8_t transaction) {
   const auto service = static_cast<std::uint8_t>(wire::Service::Readback);
-  const std::span<const std::uint8_t> layout = bytes_of(state.layouts.blob);
   if (!state.layouts.committed)
     return answer_status(state, service, transaction, TransferStatus::NothingStaged);
-  ServiceAnswer answer(service, transaction, TransferStatus::Ok);
-  for (const std::uint8_t byte : layout) answer.body().put(byte, 1);
-  answer.start(state.service.sender);
+  ServiceAnswer answer(state, service, transaction, TransferStatus::Ok);
+  wire::encode(state.layouts.layout, answer.body());
+  answer.start();
 }
 
 void serve_identify(State& state, std::uint8_t transaction) {
   const wire::LayoutTarget target = target_of(state.config);
-  ServiceAnswer answer(static_cast<std::uint8_t>(wire::Service::Identify), transaction, TransferStatus::Ok);
+  ServiceAnswer answer(state, static_cast<std::uint8_t>(wire::Service::Identify), transaction,
+                       TransferStatus::Ok);
   wire::Identification{.node = target.node,
                        .node_class = target.node_class,
                        .kit_id = target.kit_id,
@@ -133,19 +122,19 @@ void serve_identify(State& state, std::uint8_t transaction) {
                        .layout_crc = state.layouts.crc,
                        .layout_committed = state.layouts.committed}
       .put(answer.body());
-  answer.start(state.service.sender);
+  answer.start();
   state.identity_burst = true;
   state.identity_page = 0;
 }
 
 void serve_log(State& state, std::uint8_t transaction) {
-  ServiceAnswer answer(static_cast<std::uint8_t>(wire::Service::Log), transaction, TransferStatus::Ok);
+  ServiceAnswer answer(state, static_cast<std::uint8_t>(wire::Service::Log), transaction, TransferStatus::Ok);
   answer.body().put(state.counters.bad_frames, 4);
   answer.body().put(state.counters.events_ignored, 4);
   answer.body().put(state.counters.events_refused, 4);
   answer.body().put(state.counters.frames_not_sent, 4);
   answer.body().put(state.counters.steps, 4);
-  answer.start(state.service.sender);
+  answer.start();
 }
 
 void serve(State& state, std::span<const std::uint8_t> request) {
@@ -199,9 +188,11 @@ void advance_service(State& state, std::uint16_t elapsed_ms, SendQueue& queue) {
 
 bool restore_layout(State& state, const LayoutBlob& blob) {
   if (blob.size == 0 || blob.size > blob.bytes.size()) return false;
-  const auto layout = wire::decode_layout(bytes_of(blob));
-  if (!layout || wire::admissible(*layout, target_of(state.config)) != TransferStatus::Ok) return false;
-  take_up_layout(state, *layout, blob);
+  const std::span<const std::uint8_t> record = std::span(blob.bytes).first(blob.size);
+  wire::Layout& layout = state.layouts.staged;
+  if (wire::decode_layout(record, layout) != TransferStatus::Ok) return false;
+  if (wire::admissible(layout, target_of(state.config)) != TransferStatus::Ok) return false;
+  take_up_layout(state);
   return true;
 }
 

@@ -40,7 +40,7 @@ SensorTrouble trouble_of(const Config& config, const Sensors& sensors) {
 
 void observe_pressures(const Config& config, const Sensors& sensors, std::int32_t elapsed_ms,
                        Measurement& m) {
-  const auto in_range = [](std::int32_t mbar) { return std::clamp(mbar, -1000, 20000); };
+  const auto in_range = [](std::int32_t mbar) { return std::clamp<std::int32_t>(mbar, -1000, 20000); };
   const std::int32_t open_mbar = (in_range(sensors.open_mbar[0]) + in_range(sensors.open_mbar[1])) / 2;
   if (!m.started) {
     for (std::size_t i = 0; i < 2; ++i) m.close_ubar[i] = in_range(sensors.close_mbar[i]) * 1000;
@@ -59,11 +59,12 @@ void observe_pressures(const Config& config, const Sensors& sensors, std::int32_
 
 std::uint16_t counted(std::uint16_t ms, bool going_on, std::uint32_t elapsed_ms) {
   if (!going_on) return 0;
-  return static_cast<std::uint16_t>(std::min<std::uint32_t>(ms + std::min(elapsed_ms, 1000U), 60000U));
+  return static_cast<std::uint16_t>(
+      std::min<std::uint32_t>(ms + std::min<std::uint32_t>(elapsed_ms, 1000), 60000));
 }
 
 void observe(const Config& config, const Sensors& sensors, std::uint32_t elapsed_ms, Measurement& m) {
-  observe_pressures(config, sensors, static_cast<std::int32_t>(std::min(elapsed_ms, 1000U)), m);
+  observe_pressures(config, sensors, static_cast<std::int32_t>(std::min<std::uint32_t>(elapsed_ms, 1000)), m);
 
   const std::int32_t moved_10um = sensors.separation_10um - m.still_at_10um;
   const bool still = m.started && moved_10um <= kStill_10um && moved_10um >= -kStill_10um;
@@ -95,9 +96,10 @@ std::int32_t squeeze_dn(const Config& config, std::int32_t close_ubar, std::int3
 }
 
 std::int32_t pressure_mbar(const Config& config, std::int32_t force_dn, std::int32_t open_mbar) {
-  const std::int64_t net_mbar =
-      std::int64_t{force_dn - config.spring_dn} * 1'000'000 / std::max(config.area_udn_per_mbar, 1);
-  const std::int64_t behind_mbar = std::int64_t{std::max(open_mbar, 0)} * config.open_ratio_permille / 1000;
+  const std::int64_t net_mbar = std::int64_t{force_dn - config.spring_dn} * 1'000'000 /
+                                std::max<std::int32_t>(config.area_udn_per_mbar, 1);
+  const std::int64_t behind_mbar =
+      std::int64_t{std::max<std::int32_t>(open_mbar, 0)} * config.open_ratio_permille / 1000;
   return static_cast<std::int32_t>(std::clamp<std::int64_t>(net_mbar + behind_mbar, 0, 20000));
 }
 

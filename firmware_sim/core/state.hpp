@@ -19,13 +19,14 @@
 
 namespace pinjaw::core {
 
-/// The layout that is committed, and one that waits for its COMMIT.
+/// The layout that is committed, and one that waits for its COMMIT. A record has one form only, so that its
+/// bytes are made again where they are wanted.
 struct Layouts {
   bool committed = false;
+  bool is_staged = false;
   wire::Layout layout;  ///< meaningful while `committed`
   std::uint32_t crc = 0;
-  LayoutBlob blob;
-  LayoutBlob staged;  ///< size 0: none
+  wire::Layout staged;  ///< meaningful while `is_staged`
 };
 
 /// Non-volatile memory as the core sees it: what it has asked for and what is done.

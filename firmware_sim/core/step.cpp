@@ -86,8 +86,7 @@ Valves decide_valves(State& state, const Inputs& inputs) {
 
 }  // namespace
 
-State power_on(const Config& config, const NvmImage& image) {
-  State state;
+void power_on(const Config& config, const NvmImage& image, State& state) {
   state.config = config;
   state.store.readable = image.readable;
   NvmRecord record = image.record.value_or(NvmRecord{});
@@ -100,12 +99,17 @@ State power_on(const Config& config, const NvmImage& image) {
     save(state.store, record);
   }
   state.timers.force.start(wire::kForceOffset_ms + 1);  // the first STATE goes out after 1 ms
+}
+
+State power_on(const Config& config, const NvmImage& image) {
+  State state;
+  power_on(config, image, state);
   return state;
 }
 
-Outputs step(State& state, const Inputs& inputs) {
-  Outputs outputs;
-  const auto elapsed_ms = static_cast<std::uint16_t>(std::min(inputs.elapsed_ms, 60000U));
+void step(State& state, const Inputs& inputs, Outputs& outputs) {
+  outputs.send.size = 0;
+  const auto elapsed_ms = static_cast<std::uint16_t>(std::min<std::uint32_t>(inputs.elapsed_ms, 60000));
   const Announcement said_before = state.announced;
   ++state.counters.steps;
   let_time_pass(state, elapsed_ms);
@@ -118,7 +122,12 @@ Outputs step(State& state, const Inputs& inputs) {
   outputs.valves = decide_valves(state, inputs);
   advance_service(state, elapsed_ms, outputs.send);
   report(state, elapsed_ms, outputs.valves, said_before, outputs.send);
-  outputs.nvm = flush(state.store, state.layouts.blob);
+  flush(state.store, state.layouts.layout, outputs.nvm);
+}
+
+Outputs step(State& state, const Inputs& inputs) {
+  Outputs outputs;
+  step(state, inputs, outputs);
   return outputs;
 }
 

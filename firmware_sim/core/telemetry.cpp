@@ -22,7 +22,7 @@ void send_cyclic(State& state, SendQueue& queue, const Message& message, std::ui
 }
 
 std::uint16_t positive(std::int32_t value) {
-  return static_cast<std::uint16_t>(std::clamp(value, 0, 0xFFFF));
+  return static_cast<std::uint16_t>(std::clamp<std::int32_t>(value, 0, 0xFFFF));
 }
 
 /// True once a period has passed; then the next one begins.
@@ -97,8 +97,8 @@ wire::Custody custody_of(const State& state) {
           .peer = state.announced.peer,
           .token = state.announced.token,
           .pair = state.announced.pair,
-          .f_low_n = static_cast<std::uint8_t>(
-              std::clamp(state.config.passive ? 0 : state.measurement.squeeze.low_dn / 10, 0, 254))};
+          .f_low_n = static_cast<std::uint8_t>(std::clamp<std::int32_t>(
+              state.config.passive ? 0 : state.measurement.squeeze.low_dn / 10, 0, 254))};
 }
 
 std::uint8_t valve_bits(const Valves& valves) {

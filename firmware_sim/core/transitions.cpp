@@ -52,7 +52,8 @@ wire::FaultCode fault_of(const State& state, Event event) {
 std::uint16_t move_time_ms(const State& state, std::int32_t to_10um) {
   const std::int32_t travel_10um =
       std::max(state.measurement.separation_10um - to_10um, to_10um - state.measurement.separation_10um);
-  return static_cast<std::uint16_t>(std::min(kMoveBase_ms + travel_10um / kSlowest_10um_per_ms, 60000));
+  return static_cast<std::uint16_t>(
+      std::min<std::int32_t>(kMoveBase_ms + travel_10um / kSlowest_10um_per_ms, 60000));
 }
 
 void record_custody(State& state, Custody custody) {

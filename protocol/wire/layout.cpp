@@ -1,6 +1,5 @@
 #include "protocol/wire/layout.hpp"
 
-#include <optional>
 #include <utility>
 
 #include "protocol/wire/bits.hpp"
@@ -13,7 +12,16 @@ namespace {
 
 constexpr std::uint8_t kCylinder = 0;
 
-void put_pins(ByteWriter& out, const Layout& layout) {
+/// Where a record is written to that only its checksum is wanted of.
+struct ChecksumOnly {
+  Crc32 crc;
+  void put(std::uint32_t value, unsigned bytes) {
+    for (unsigned i = 0; i < bytes; ++i) crc.add(static_cast<std::uint8_t>(value >> (8 * i)));
+  }
+};
+
+template <class Out>
+void put_pins(Out& out, const Layout& layout) {
   out.put(layout.pin_count, 1);
   for (const LayoutPin& pin : layout.used_pins()) {
     out.put(static_cast<std::uint8_t>(pin.jaw), 1);
@@ -24,7 +32,8 @@ void put_pins(ByteWriter& out, const Layout& layout) {
   }
 }
 
-void put_body(ByteWriter& out, const Layout& layout) {
+template <class Out>
+void put_body(Out& out, const Layout& layout) {
   out.put(kLayoutMagic, 4);
   out.put(kLayoutSchema, 1);
   out.put(static_cast<std::uint8_t>(layout.node_class), 1);
@@ -44,7 +53,8 @@ void put_body(ByteWriter& out, const Layout& layout) {
   out.put(layout.passive ? 1 : 0, 1);
 }
 
-void put_peers(ByteWriter& out, const Layout& layout) {
+template <class Out>
+void put_peers(Out& out, const Layout& layout) {
   out.put(layout.peer_count, 1);
   for (const LayoutPeer& peer : layout.used_peers()) {
     out.put(peer.node, 1);
@@ -118,11 +128,12 @@ TransferStatus read_peers(ByteReader& in, Layout& layout) {
 }
 
 /// Reads a checksum and compares it with that of the bytes from `begin` to it.
-std::optional<bool> checksum_holds(ByteReader& in, std::span<const std::uint8_t> bytes, std::size_t begin) {
+TransferStatus check_sum(ByteReader& in, std::span<const std::uint8_t> bytes, std::size_t begin,
+                         TransferStatus wrong) {
   const std::size_t end = in.used();
   const std::uint32_t told = in.take(4);
-  if (in.truncated()) return std::nullopt;
-  return told == crc_of<Crc32>(bytes.subspan(begin, end - begin));
+  if (in.truncated()) return TransferStatus::Length;
+  return told == crc_of<Crc32>(bytes.subspan(begin, end - begin)) ? TransferStatus::Ok : wrong;
 }
 
 bool has_duplicate_hole(std::span<const LayoutPin> pins) {
@@ -197,41 +208,49 @@ std::uint32_t first_digits(std::span<const char> hex, std::size_t count) {
 
 }  // namespace
 
+void encode(const Layout& layout, ByteWriter& out) {
+  put_body(out, layout);
+  out.put(layout_crc_of(layout), 4);
+  put_peers(out, layout);
+  ChecksumOnly peers;
+  put_peers(peers, layout);
+  out.put(peers.crc.value(), 4);
+}
+
 EncodedLayout encode(const Layout& layout) {
   EncodedLayout encoded;
   ByteWriter out(encoded.bytes);
-  put_body(out, layout);
-  const std::size_t body = out.used();
-  out.put(crc_of<Crc32>(std::span(encoded.bytes).first(body)), 4);
-  const std::size_t peers = out.used();
-  put_peers(out, layout);
-  out.put(crc_of<Crc32>(std::span(encoded.bytes).subspan(peers, out.used() - peers)), 4);
+  encode(layout, out);
   encoded.size = out.used();
   return encoded;
 }
 
 std::uint32_t layout_crc_of(const Layout& layout) {
-  EncodedLayout encoded;
-  ByteWriter out(encoded.bytes);
-  put_body(out, layout);
-  return crc_of<Crc32>(std::span(encoded.bytes).first(out.used()));
+  ChecksumOnly body;
+  put_body(body, layout);
+  return body.crc.value();
+}
+
+TransferStatus decode_layout(std::span<const std::uint8_t> bytes, Layout& layout) {
+  layout = {};
+  ByteReader in(bytes);
+  TransferStatus status = read_head(in, layout);
+  if (status == TransferStatus::Ok) status = read_pins(in, layout);
+  if (status == TransferStatus::Ok) status = read_numbers(in, layout);
+  if (status != TransferStatus::Ok) return status;
+  status = check_sum(in, bytes, 0, TransferStatus::LayoutChecksum);
+  if (status != TransferStatus::Ok) return status;
+  const std::size_t peers = in.used();
+  status = read_peers(in, layout);
+  if (status != TransferStatus::Ok) return status;
+  status = check_sum(in, bytes, peers, TransferStatus::PeersChecksum);
+  if (in.left() != 0) return TransferStatus::Length;
+  return status == TransferStatus::Ok ? check_content(layout) : status;
 }
 
 Result<Layout, TransferStatus> decode_layout(std::span<const std::uint8_t> bytes) {
   Layout layout;
-  ByteReader in(bytes);
-  for (const auto read : {read_head, read_pins, read_numbers}) {
-    if (const TransferStatus status = read(in, layout); status != TransferStatus::Ok) return status;
-  }
-  const std::optional<bool> body_holds = checksum_holds(in, bytes, 0);
-  if (!body_holds) return TransferStatus::Length;
-  if (!*body_holds) return TransferStatus::LayoutChecksum;
-  const std::size_t peers = in.used();
-  if (const TransferStatus status = read_peers(in, layout); status != TransferStatus::Ok) return status;
-  const std::optional<bool> peers_hold = checksum_holds(in, bytes, peers);
-  if (!peers_hold || in.left() != 0) return TransferStatus::Length;
-  if (!*peers_hold) return TransferStatus::PeersChecksum;
-  if (const TransferStatus status = check_content(layout); status != TransferStatus::Ok) return status;
+  if (const TransferStatus status = decode_layout(bytes, layout); status != TransferStatus::Ok) return status;
   return layout;
 }
 

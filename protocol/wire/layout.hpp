@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 
+#include "protocol/wire/bits.hpp"
 #include "protocol/wire/result.hpp"
 #include "protocol/wire/services.hpp"
 
@@ -92,6 +93,7 @@ struct LayoutTarget {
 
 /// The record, checksums included. Precondition: pin_count <= 16, peer_count <= 4.
 EncodedLayout encode(const Layout& layout);
+void encode(const Layout& layout, ByteWriter& out);
 
 /// CRC-32 over the record's bytes before the checksum; peers do not count, so that two layouts can name each
 /// other.
@@ -99,6 +101,8 @@ std::uint32_t layout_crc_of(const Layout& layout);
 
 /// Reads a record and checks its form, checksums and ranges and everything that holds on any controller.
 Result<Layout, TransferStatus> decode_layout(std::span<const std::uint8_t> bytes);
+/// The same into a layout that is there; what it holds means nothing unless the answer is Ok.
+TransferStatus decode_layout(std::span<const std::uint8_t> bytes, Layout& layout);
 
 /// Ok, or why `target` must not work by `layout`. Precondition: it came from decode_layout.
 TransferStatus admissible(const Layout& layout, const LayoutTarget& target);

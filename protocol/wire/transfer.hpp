@@ -90,7 +90,7 @@ class TransferReceiver {
   constexpr void begin(std::size_t length) {
     if (busy_) abandon(TransferEnd::Replaced);
     complete_ = false;
-    expected_ = length;
+    expected_ = static_cast<std::uint16_t>(length);
     received_ = 0;
   }
 
@@ -157,8 +157,8 @@ class TransferReceiver {
   }
 
   std::array<std::uint8_t, kMaxTransferBytes> message_{};
-  std::size_t expected_ = 0;
-  std::size_t received_ = 0;
+  std::uint16_t expected_ = 0;
+  std::uint16_t received_ = 0;
   std::uint8_t next_number_ = 0;
   std::uint8_t block_left_ = 0;
   bool busy_ = false;
@@ -174,8 +174,18 @@ class TransferSender {
   /// Begins to send; what was under way is dropped. False where the length is not 1..256.
   constexpr bool start(std::span<const std::uint8_t> message) {
     if (message.empty() || message.size() > kMaxTransferBytes) return false;
-    for (std::size_t i = 0; i < message.size(); ++i) message_[i] = message[i];
-    length_ = message.size();
+    std::copy(message.begin(), message.end(), message_.begin());
+    return start(message.size());
+  }
+
+  /// Room to write a message into before start(length) sends it; drops what was under way.
+  constexpr std::span<std::uint8_t> compose() {
+    cancel();
+    return message_;
+  }
+  constexpr bool start(std::size_t length) {
+    if (length == 0 || length > kMaxTransferBytes) return false;
+    length_ = static_cast<std::uint16_t>(length);
     sent_ = 0;
     waits_ = 0;
     phase_ = Phase::Begin;
@@ -284,8 +294,8 @@ class TransferSender {
   }
 
   std::array<std::uint8_t, kMaxTransferBytes> message_{};
-  std::size_t length_ = 0;
-  std::size_t sent_ = 0;
+  std::uint16_t length_ = 0;
+  std::uint16_t sent_ = 0;
   std::uint8_t number_ = 0;
   std::uint8_t block_left_ = 0;
   std::uint8_t gap_ms_ = kSegmentGap_ms;
