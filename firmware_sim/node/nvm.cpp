@@ -1,45 +1,52 @@
 #include "firmware_sim/node/nvm.hpp"
 
+#include <utility>
+
 namespace pinjaw::node {
 
+void Nvm::begin(const core::NvmWrite& request) {
+  under_way_ = Write{.update = {memory_, request}, .sequence = request.sequence};
+}
+
 void Nvm::store(const core::NvmWrite& request) {
-  if (under_way_) {
-    if (next_) {
-      // Both parts of an overtaken request stay to be stored, the newer of each.
-      if (request.record) next_->record = request.record;
-      if (request.layout) next_->layout = request.layout;
-      next_->sequence = request.sequence;
-    } else {
-      next_ = request;
-    }
+  if (!under_way_) return begin(request);
+  if (!next_) {
+    next_ = request;
     return;
   }
-  under_way_ = request;
-  left_ms_ = kWrite_ms;
+  // Both parts of an overtaken request stay to be stored, the newer of each.
+  if (request.record) next_->record = request.record;
+  if (request.layout) next_->layout = request.layout;
+  next_->sequence = request.sequence;
 }
 
 void Nvm::advance_ms(unsigned elapsed_ms) {
-  while (under_way_ && elapsed_ms >= left_ms_) {
-    elapsed_ms -= left_ms_;
-    commit(*under_way_);
-    under_way_ = next_;
-    next_.reset();
-    left_ms_ = kWrite_ms;
+  for (; under_way_ && elapsed_ms > 0; --elapsed_ms) {
+    ++under_way_->elapsed_ms;
+    write_on();
   }
-  if (under_way_) left_ms_ -= elapsed_ms;
 }
 
 void Nvm::cut_power() {
   under_way_.reset();
   next_.reset();
   done_ = 0;
+  image_ = core::image_of(memory_);
 }
 
-void Nvm::commit(const core::NvmWrite& request) {
-  if (broken_) return;
-  if (request.record) image_.record = request.record;
-  if (request.layout) image_.layout = *request.layout;
-  done_ = request.sequence;
+void Nvm::write_on() {
+  Write& write = *under_way_;
+  const std::size_t due = write.update.size() * write.elapsed_ms / kWrite_ms;
+  for (; write.written < due; ++write.written) {
+    if (!broken_) write.update.put(write.written, memory_);
+  }
+  if (write.elapsed_ms < kWrite_ms) return;
+  if (!broken_) {
+    done_ = write.sequence;
+    image_ = core::image_of(memory_);
+  }
+  under_way_.reset();
+  if (const auto next = std::exchange(next_, std::nullopt)) begin(*next);
 }
 
 }  // namespace pinjaw::node

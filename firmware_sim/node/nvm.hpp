@@ -1,13 +1,15 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 
 #include "firmware_sim/core/io.hpp"
+#include "firmware_sim/core/record.hpp"
 
 namespace pinjaw::node {
 
-/// A controller's permanent memory: two slots written by turns, so that a record is stored whole or not at
-/// all. It survives power cuts; a write under way when power goes is lost.
+/// A controller's permanent memory, byte by byte (core/record.hpp): a record is stored whole or not at all.
+/// It survives power cuts; of a write under way when power goes, the bytes written so far stay.
 class Nvm {
  public:
   [[nodiscard]] const core::NvmImage& image() const { return image_; }
@@ -16,21 +18,29 @@ class Nvm {
   /// Takes a request; it is stored kWrite_ms later. A request that comes while one is under way waits for it.
   void store(const core::NvmWrite& request);
   void advance_ms(unsigned elapsed_ms);
-  /// What was not stored yet is lost, and the memory's report of what is done starts again.
+  /// A request under way stays half written, and the memory's report of what is done starts again.
   void cut_power();
 
   /// From now on nothing is stored (a fault).
   void fail() { broken_ = true; }
 
-  static constexpr unsigned kWrite_ms = 2;  // chosen: FRAM or a page of data flash, 64 B with check
+  static constexpr unsigned kWrite_ms = 2;  // chosen: FRAM; at most 712 bytes
 
  private:
-  void commit(const core::NvmWrite& request);
+  struct Write {
+    core::MemoryUpdate update;
+    std::uint16_t sequence = 0;
+    std::size_t written = 0;
+    unsigned elapsed_ms = 0;
+  };
+  void begin(const core::NvmWrite& request);
+  /// Writes the bytes that are due.
+  void write_on();
 
+  core::Memory memory_;
   core::NvmImage image_;
-  std::optional<core::NvmWrite> under_way_;
+  std::optional<Write> under_way_;
   std::optional<core::NvmWrite> next_;
-  unsigned left_ms_ = 0;
   std::uint16_t done_ = 0;
   bool broken_ = false;
 };
