@@ -1,6 +1,8 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <type_traits>
@@ -55,16 +57,70 @@ constexpr bool node_is_legal(const MessageSpec& spec, std::uint8_t node) {
   return node >= kFirstNode && node <= kLastNode;
 }
 
+namespace detail {
+
+/// What the codec needs of a row of the table while it runs: a controller keeps no names and no comments.
+struct Address {
+  std::uint16_t base_id = 0;
+  std::uint16_t legal_nodes = 0;  ///< bit n: the id base_id + n is a message's
+  Protection protection{};
+};
+
+inline constexpr auto kAddresses = [] {
+  std::array<Address, kMessages.size()> addresses{};
+  for (std::size_t i = 0; i < addresses.size(); ++i) {
+    const MessageSpec& spec = kMessages[i];
+    addresses[i] = {.base_id = spec.base_id, .protection = spec.protection};
+    for (std::uint8_t node = 0; node < 16; ++node) {
+      if (node_is_legal(spec, node)) addresses[i].legal_nodes |= static_cast<std::uint16_t>(1U << node);
+    }
+  }
+  return addresses;
+}();
+
+constexpr const Address& address_of(MessageType type) {
+  return kAddresses[static_cast<std::size_t>(type) - 1];
+}
+
+/// The same of a field, in two words that fold to constants wherever the row is one.
+struct FieldRule {
+  enum Kind : std::uint32_t { Number, NumberOrUnknown, Named, FaultCodes };
+  std::uint32_t shape = 0;  ///< start, length, kind: 8 bits each
+  std::uint32_t names = 0;  ///< Named: a bit for each legal value
+
+  constexpr FieldRule(std::uint32_t shape_of, std::uint32_t names_of) : shape(shape_of), names(names_of) {}
+  [[gnu::always_inline]] constexpr explicit FieldRule(const FieldSpec& field)
+      : shape(field.start | std::uint32_t{field.length} << 8), names(field.value_bits) {
+    Kind kind = field.all_ones_is_unknown ? NumberOrUnknown : Number;
+    if (!field.values.empty()) kind = names != 0 ? Named : FaultCodes;
+    shape |= kind << 16;
+  }
+  [[nodiscard]] constexpr unsigned start() const { return shape & 0xFFU; }
+  [[nodiscard]] constexpr std::uint64_t mask() const { return ones(shape >> 8 & 0xFFU); }
+  [[nodiscard]] constexpr std::uint32_t kind() const { return shape >> 16; }
+  [[nodiscard]] constexpr bool admits(std::uint64_t raw) const {
+    if (kind() == Named) return raw < 32 && (names >> raw & 1U) != 0;
+    return kind() != FaultCodes || raw == 0 || index_of(static_cast<FaultCode>(raw)) != 0;
+  }
+};
+
+/// Largest raw number of a field that has no bound but its bits.
+[[gnu::always_inline]] constexpr std::uint64_t largest_of(const FieldSpec& field) {
+  return ones(field.length) - (field.all_ones_is_unknown ? 1U : 0U);
+}
+
+}  // namespace detail
+
 constexpr std::uint32_t id_of(Identifier identifier) {
-  return std::uint32_t{spec_of(identifier.type).base_id} + identifier.node;
+  return std::uint32_t{detail::address_of(identifier.type).base_id} + identifier.node;
 }
 
 constexpr std::optional<Identifier> identify(std::uint32_t id) {
-  for (const MessageSpec& spec : kMessages) {
-    const std::uint32_t width = spec.per_node ? 16U : 1U;
-    if (id < spec.base_id || id >= spec.base_id + width) continue;
-    const auto node = static_cast<std::uint8_t>(id - spec.base_id);
-    if (node_is_legal(spec, node)) return Identifier{spec.type, node};
+  for (std::size_t i = 0; i < detail::kAddresses.size(); ++i) {
+    const std::uint32_t node = id - detail::kAddresses[i].base_id;  // wraps past 15 where id is less
+    if (node < 16 && (detail::kAddresses[i].legal_nodes >> node & 1U) != 0) {
+      return Identifier{static_cast<MessageType>(i + 1), static_cast<std::uint8_t>(node)};
+    }
   }
   return std::nullopt;
 }
@@ -78,10 +134,10 @@ inline constexpr bool kIsOptional<std::optional<T>> = true;
 
 /// A member's raw number. Quantities past the field's range are written as its largest.
 template <class T>
-constexpr std::uint64_t to_raw(const FieldSpec& field, const T& member) {
+[[gnu::always_inline]] constexpr std::uint64_t to_raw(const FieldSpec& field, const T& member) {
   if constexpr (kIsOptional<T>) {
     if (!member) return ones(field.length);
-    return std::min<std::uint64_t>(*member, field.largest());
+    return std::min<std::uint64_t>(*member, largest_of(field));
   } else if constexpr (std::is_same_v<T, FaultCode>) {
     return field.length == 8 ? index_of(member) : static_cast<std::uint64_t>(member);
   } else if constexpr (std::is_same_v<T, Fact>) {
@@ -89,13 +145,13 @@ constexpr std::uint64_t to_raw(const FieldSpec& field, const T& member) {
   } else if constexpr (std::is_enum_v<T>) {
     return static_cast<std::uint64_t>(member);
   } else {
-    return std::min<std::uint64_t>(member, field.largest());
+    return std::min<std::uint64_t>(member, largest_of(field));
   }
 }
 
 /// Precondition: field.admits(raw).
 template <class T>
-constexpr T from_raw(const FieldSpec& field, std::uint64_t raw) {
+[[gnu::always_inline]] constexpr T from_raw(const FieldSpec& field, std::uint64_t raw) {
   if constexpr (kIsOptional<T>) {
     if (raw == ones(field.length)) return std::nullopt;
     return static_cast<typename T::value_type>(raw);
@@ -108,11 +164,16 @@ constexpr T from_raw(const FieldSpec& field, std::uint64_t raw) {
   }
 }
 
+// Not inlined: one copy for all fields of all messages is a third of a controller's code.
 struct Writer {
   std::uint64_t word = 0;
   template <class T>
-  constexpr void operator()(const FieldSpec& field, const T& member) {
-    word |= (to_raw(field, member) & ones(field.length)) << field.start;
+  [[gnu::always_inline]] constexpr void operator()(const FieldSpec& field, const T& member) {
+    put(FieldRule(field).shape, to_raw(field, member));
+  }
+  [[gnu::noinline]] constexpr void put(std::uint32_t shape, std::uint64_t raw) {
+    const FieldRule rule(shape, 0);
+    word |= (raw & rule.mask()) << rule.start();
   }
 };
 
@@ -121,18 +182,31 @@ struct Reader {
   std::uint64_t seen = 0;
   bool legal = true;
   template <class T>
-  constexpr void operator()(const FieldSpec& field, T& member) {
-    const std::uint64_t raw = (word >> field.start) & ones(field.length);
-    seen |= field.mask();
-    if (!field.admits(raw)) {
-      legal = false;
-    } else {
-      member = from_raw<T>(field, raw);
-    }
+  [[gnu::always_inline]] constexpr void operator()(const FieldSpec& field, T& member) {
+    member = from_raw<T>(field, take(FieldRule(field).shape, FieldRule(field).names));
+  }
+  /// The field's raw number; 0 where it means nothing, and then the frame is not legal.
+  [[gnu::noinline]] constexpr std::uint64_t take(std::uint32_t shape, std::uint32_t names) {
+    const FieldRule rule(shape, names);
+    const std::uint64_t raw = (word >> rule.start()) & rule.mask();
+    seen |= rule.mask() << rule.start();
+    if (rule.admits(raw)) return raw;
+    legal = false;
+    return 0;
   }
 };
 
-constexpr std::uint8_t checksum(Identifier identifier, const Payload& data) {
+/// Nothing but CTR, which is no member of a message, has a bound that FieldRule does not know.
+static_assert([] {
+  for (const MessageSpec& spec : kMessages) {
+    for (const FieldSpec& field : spec.fields) {
+      if (field.raw_maximum != 0 && !same_text(field.name, kCounterField.name)) return false;
+    }
+  }
+  return true;
+}());
+
+[[gnu::noinline]] constexpr std::uint8_t checksum(Identifier identifier, const Payload& data) {
   Crc8 crc;
   crc.add(static_cast<std::uint8_t>(static_cast<unsigned>(identifier.type) << 4 | identifier.node));
   crc.add(0x5A);
@@ -146,11 +220,11 @@ constexpr std::uint64_t header_mask(Protection protection) {
 }
 
 /// What every frame must satisfy before its fields are looked at.
-constexpr std::optional<FrameError> header_error(const Frame& frame, const MessageSpec& spec,
-                                                 std::uint8_t node) {
+[[gnu::noinline]] constexpr std::optional<FrameError> header_error(const Frame& frame,
+                                                                   Identifier identifier) {
   if (frame.length != 8) return FrameError::Length;
-  if (frame.data[0] != checksum({spec.type, node}, frame.data)) return FrameError::Checksum;
-  if (spec.protection != Protection::Counter) return std::nullopt;
+  if (frame.data[0] != checksum(identifier, frame.data)) return FrameError::Checksum;
+  if (address_of(identifier.type).protection != Protection::Counter) return std::nullopt;
   if (frame.data[1] >> 4 != kProtocolVersion) return FrameError::Version;
   if ((frame.data[1] & 0xFU) > kCounterField.largest()) return FrameError::Counter;
   return std::nullopt;
@@ -190,7 +264,7 @@ constexpr Result<Received<Message>, FrameError> parse(const Frame& frame) {
   const auto identifier = identify(frame);
   if (!identifier) return identifier.error();
   if (identifier->type != Message::kType) return FrameError::UnknownId;
-  if (const auto error = detail::header_error(frame, kSpec, identifier->node)) return *error;
+  if (const auto error = detail::header_error(frame, *identifier)) return *error;
   Received<Message> received{.label = {.node = identifier->node}, .message = {}};
   if constexpr (kSpec.protection == Protection::Counter) received.label.counter = frame.data[1] & 0xFU;
   detail::Reader reader{.word = to_word(frame.data), .seen = detail::header_mask(kSpec.protection)};
@@ -209,7 +283,7 @@ struct Segment {
 constexpr Result<Segment, FrameError> parse_segment(const Frame& frame) {
   const auto identifier = identify(frame);
   if (!identifier) return identifier.error();
-  if (spec_of(identifier->type).protection != Protection::None) return FrameError::UnknownId;
+  if (detail::address_of(identifier->type).protection != Protection::None) return FrameError::UnknownId;
   if (frame.length != 8) return FrameError::Length;
   return Segment{*identifier, frame.data};
 }

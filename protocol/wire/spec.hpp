@@ -14,6 +14,16 @@ struct ValueName {
   const char* name = "";
 };
 
+/// A bit for each value of a list whose values are all under 32; 0 for any other list.
+constexpr std::uint32_t bits_of(std::span<const ValueName> values) {
+  std::uint32_t bits = 0;
+  for (const ValueName& value : values) {
+    if (value.value >= 32) return 0;
+    bits |= std::uint32_t{1} << value.value;
+  }
+  return bits;
+}
+
 /// physical = raw * numerator / denominator
 struct Ratio {
   std::uint16_t numerator = 1;
@@ -32,6 +42,7 @@ struct FieldSpec {
   bool all_ones_is_unknown = false;     ///< the largest raw value says that the quantity is not known
   std::uint64_t raw_maximum = 0;        ///< largest raw value; 0: as many as fit
   std::span<const ValueName> values{};  ///< not empty: an enumeration, and no other value is legal
+  std::uint32_t value_bits = bits_of(values);
   Presence presence = Presence::Always;
   std::uint8_t selector = 0;  ///< with Presence::Selected: the selector's value
   const char* comment = "";
