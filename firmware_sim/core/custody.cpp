@@ -1,6 +1,7 @@
 #include "firmware_sim/core/custody.hpp"
 
 #include "firmware_sim/core/guards.hpp"
+#include "firmware_sim/core/rules.hpp"
 
 namespace pinjaw::core {
 
@@ -29,8 +30,10 @@ void flush(Store& store, const wire::Layout& committed, std::optional<NvmWrite>&
 }
 
 void announce(State& state) {
-  if (!state.store.durable()) return;
   const NvmRecord& record = state.store.record;
+  if (!state.store.readable) return;  // whatever the record was, it is not known
+  const bool early = record.custody == Custody::Latched && !keeps(Rule::LatchBeforeTake);
+  if (!state.store.durable() && !early) return;
   const auto say = [&](wire::Fact fact) {
     state.announced = {.fact = fact, .peer = record.peer, .token = record.token, .pair = record.pair};
   };
@@ -44,21 +47,22 @@ void announce(State& state) {
       if (state.id == StateId::Offered || state.id == StateId::Relax) say(wire::Fact::Offer);
       return;
     case Custody::Latched:
-      if (state.hold_proven) say(wire::Fact::Take);
+      if (state.hold_proven || !keeps(Rule::TakeOnStableHold)) say(wire::Fact::Take);
       return;
     case Custody::Decided:
       return;
     case Custody::Released:
       return say(wire::Fact::Released);
     case Custody::Retained:
-      if (state.announced.fact != wire::Fact::Retain && !holds_enough(state)) return;
+      if (state.announced.fact != wire::Fact::Retain && !holds_enough(state) && keeps(Rule::RetainOnGoodHold))
+        return;
       return say(wire::Fact::Retain);
   }
 }
 
 bool token_is_new(const NvmRecord& record, std::uint8_t giver, std::uint16_t token) {
   if (giver >= record.last_token.size()) return false;
-  if (((record.seen_givers >> giver) & 1U) == 0) return true;
+  if (((record.seen_givers >> giver) & 1U) == 0 || !keeps(Rule::RefuseOldToken)) return true;
   const auto ahead = static_cast<std::uint16_t>(token - record.last_token[giver]);
   return ahead != 0 && ahead < 0x8000;
 }

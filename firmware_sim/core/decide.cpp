@@ -3,6 +3,7 @@
 #include "firmware_sim/core/commands.hpp"
 #include "firmware_sim/core/custody.hpp"
 #include "firmware_sim/core/guards.hpp"
+#include "firmware_sim/core/rules.hpp"
 #include "protocol/wire/commands.hpp"
 
 namespace pinjaw::core {
@@ -84,7 +85,7 @@ Answer check_squeeze(const State& state, const wire::Command& command) {
     if (forces.permit_dn > limit_dn) return {CommandResult::Limit, Reason::ForceOverLimit};
     if (forces.set_dn < layout.f_required_dn + u_dn) return refused(Reason::ForceUnderRequired);
   }
-  if (state.receiving.giver != wire::kOperatorPeer && !giver_answers_for_part(state)) {
+  if (state.receiving.giver != wire::kOperatorPeer && !giver_offers(state)) {
     return refused(Reason::PeerStale);
   }
   return handoff_allowed(state);
@@ -92,6 +93,10 @@ Answer check_squeeze(const State& state, const wire::Command& command) {
 
 Answer check_offer(const State& state, const wire::Command& command) {
   if (state.layouts.layout.peer(command.argument) == nullptr) return refused(Reason::PeerNotInLayout);
+  // The last handoff's RETAIN first: once another token is out it is said as an outcome of the past, and an
+  // outcome must have been true once (R5).
+  if (state.store.record.custody == Custody::Retained && state.announced.fact != wire::Fact::Retain)
+    return {CommandResult::Busy, Reason::HandoffRunning};
   return handoff_allowed(state);
 }
 
@@ -106,14 +111,15 @@ Answer check_abort(const State& state) {
     if (!no_part_proven(state)) return refused(Reason::PartSuspected);
   } else if (state.receiving.giver == wire::kOperatorPeer) {
     if (!state.measurement.local_enable) return refused(Reason::NoLocalEnable);
-  } else if (!giver_answers_for_part(state)) {
+  } else if (!state.receiving.retained && !giver_offers(state)) {
     return refused(Reason::PeerStale);
   }
   return motion_allowed(state);
 }
 
 Answer check_open_empty(const State& state) {
-  if (has_custody(state.store.record.custody)) return refused(Reason::PartHeld);
+  if (has_custody(state.store.record.custody) && keeps(Rule::SoleRefusesOpen))
+    return refused(Reason::PartHeld);
   if (!no_part_proven(state)) return refused(Reason::PartSuspected);
   return motion_allowed(state);
 }
@@ -127,6 +133,8 @@ Decision decide_clear_fault(const State& state) {
   if (!custody && no_part_proven(state)) return {kOk, Event::CmdClearEmpty};
   if (state.id == StateId::FaultEmpty) return {refused(custody ? Reason::PartHeld : Reason::PartSuspected)};
   if (!state.layouts.committed) return {refused(Reason::NoLayout)};
+  // Whose the part is, no record says: another node may answer for it. Only a hand at the station can tell.
+  if (!custody && !state.measurement.local_enable) return {refused(Reason::NoLocalEnable)};
   return {kOk, Event::CmdClearFault};
 }
 

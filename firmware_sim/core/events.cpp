@@ -4,6 +4,7 @@
 
 #include "firmware_sim/core/custody.hpp"
 #include "firmware_sim/core/guards.hpp"
+#include "firmware_sim/core/rules.hpp"
 #include "firmware_sim/core/transitions.hpp"
 
 namespace pinjaw::core {
@@ -74,7 +75,7 @@ Occurrence in_squeezing(const State& state) {
   if (!state.config.passive && state.measurement.squeeze.high_dn > force_limit_dn(state))
     return Event::OverForce;
   if (slipped(state)) return Event::Slip;
-  if (hold_is_stable(state)) {
+  if (hold_is_stable(state) || !keeps(Rule::TakeOnStableHold)) {
     return state.receiving.giver == wire::kOperatorPeer ? Event::HoldStableForOperator
                                                         : Event::HoldStableForPeer;
   }
@@ -91,8 +92,8 @@ Occurrence while_held(const State& state) {
 }
 
 Occurrence in_taken(const State& state) {
-  if (peer_says(state, wire::Fact::Released)) return Event::PeerReleased;
-  if (peer_says(state, wire::Fact::Retain)) return Event::PeerRetained;
+  if (peer_concludes(state, wire::Fact::Released)) return Event::PeerReleased;
+  if (peer_concludes(state, wire::Fact::Retain)) return Event::PeerRetained;
   if (!state.timers.state.running() && is_news(state, wire::FaultCode::InDoubt)) return Event::PeerSilent;
   return while_held(state);
 }
@@ -112,7 +113,8 @@ Occurrence in_relax(const State& state) {
 }
 
 Occurrence in_opening(const State& state) {
-  const bool decided = state.store.durable() && state.store.record.custody == Custody::Decided;
+  const bool decided = (state.store.durable() || !keeps(Rule::DecisionBeforeOpen)) &&
+                       state.store.record.custody == Custody::Decided;
   if (decided && clear_of_part(state)) return Event::Opened;
   return state.timers.state.running() ? std::nullopt : Occurrence(Event::OpenTimeout);
 }
@@ -139,7 +141,8 @@ Occurrence by_state(const State& state) {
     case StateId::Relax:
       return in_relax(state);
     case StateId::Resqueeze:
-      return hold_is_stable(state) ? Occurrence(Event::HoldRestored) : std::nullopt;
+      return hold_is_stable(state) || !keeps(Rule::RetainOnGoodHold) ? Occurrence(Event::HoldRestored)
+                                                                     : std::nullopt;
     case StateId::Opening:
       return in_opening(state);
     case StateId::FaultEmpty:
@@ -186,6 +189,7 @@ void track_hold(State& state, std::uint16_t elapsed_ms) {
 }
 
 void track_peer(State& state, std::uint16_t elapsed_ms) {
+  if (giver_retains(state)) state.receiving.retained = true;
   if (state.id != StateId::Offered) return;
   if (peer_says(state, wire::Fact::Take)) state.answer_seen = true;
   if (peer_holds(state)) {
@@ -202,6 +206,10 @@ void track(State& state, std::uint16_t elapsed_ms) {
   track_peer(state, elapsed_ms);
   follow(state, wire::FaultCode::HostLost, !state.host.alive());
   follow(state, wire::FaultCode::SupplyAirLow, state.measurement.supply_low);
+  follow(state, wire::FaultCode::BusOff, state.bus.off());
+  follow(state, wire::FaultCode::BusPassive, state.bus.passive());
+  if (state.bus.recovered()) state.faults.note(wire::FaultCode::BusOffRecovered);
+  if (state.bus.overran()) state.faults.note(wire::FaultCode::ReceiveOverrun);
   if (!giver_stale(state)) state.faults.clear(wire::FaultCode::PeerLost);
   const bool another_host = state.host.alive() && state.host.epoch() != state.session_epoch;
   if (!state.host.alive() || another_host) end_session(state);

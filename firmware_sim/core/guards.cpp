@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "firmware_sim/core/rules.hpp"
+
 namespace pinjaw::core {
 namespace {
 
@@ -11,6 +13,20 @@ constexpr std::int32_t kNoSqueeze_dn = 50;  // section 2.5: F_low under 5 N
 
 bool squeezes(StateId id) {
   return grips(id) || id == StateId::Squeezing;
+}
+
+/// R4: `said` is `fact` of the handoff that the record tells of, said to this node.
+bool concerns(const wire::Custody& said, wire::Fact fact, const State& state) {
+  const NvmRecord& record = state.store.record;
+  return said.fact == fact && (said.peer == state.config.node || !keeps(Rule::CompareNodes)) &&
+         (said.token == record.token || !keeps(Rule::CompareToken)) &&
+         (said.pair == record.pair || !keeps(Rule::ComparePair));
+}
+
+/// The same of the handoff that this node receives in and has not latched.
+bool concerns_receiving(const wire::Custody& said, wire::Fact fact, const State& state) {
+  return said.fact == fact && said.peer == state.config.node && said.token == state.receiving.token &&
+         said.pair == state.receiving.pair;
 }
 
 }  // namespace
@@ -59,10 +75,13 @@ bool hold_is_stable(const State& state) {
 }
 
 bool peer_says(const State& state, wire::Fact fact) {
-  const NvmRecord& record = state.store.record;
-  const Peer* peer = state.peers.find(record.peer);
-  return peer != nullptr && peer->custody.fact == fact && peer->custody.peer == state.config.node &&
-         peer->custody.token == record.token && peer->custody.pair == record.pair;
+  const Peer* peer = state.peers.find(state.store.record.peer);
+  return peer != nullptr && concerns(peer->custody, fact, state);
+}
+
+bool peer_concludes(const State& state, wire::Fact outcome) {
+  const Peer* peer = state.peers.find(state.store.record.peer);
+  return peer != nullptr && (concerns(peer->custody, outcome, state) || concerns(peer->past, outcome, state));
 }
 
 bool peer_holds(const State& state) {
@@ -75,13 +94,16 @@ bool peer_holds(const State& state) {
          peer->state.f_low_dn.value_or(0) >= named->f_required_dn;
 }
 
-bool giver_answers_for_part(const State& state) {
+bool giver_offers(const State& state) {
   const Peer* peer = state.peers.find(state.receiving.giver);
-  if (peer == nullptr || !peer->custody_fresh.running()) return false;
-  const wire::Custody& custody = peer->custody;
-  return (custody.fact == wire::Fact::Offer || custody.fact == wire::Fact::Retain) &&
-         custody.peer == state.config.node && custody.token == state.receiving.token &&
-         custody.pair == state.receiving.pair;
+  return peer != nullptr && peer->custody_fresh.running() &&
+         concerns_receiving(peer->custody, wire::Fact::Offer, state);
+}
+
+bool giver_retains(const State& state) {
+  const Peer* peer = state.peers.find(state.receiving.giver);
+  return peer != nullptr && (concerns_receiving(peer->custody, wire::Fact::Retain, state) ||
+                             concerns_receiving(peer->past, wire::Fact::Retain, state));
 }
 
 bool no_part_proven(const State& state) {

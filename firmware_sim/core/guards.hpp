@@ -38,8 +38,14 @@ bool peer_holds(const State& state);
 /// The peer of the record says `fact` of the record's token and pair to this node. Facts do not age.
 bool peer_says(const State& state, wire::Fact fact);
 
-/// The giver that this node accepted still offers, or has taken back, that token; fresh.
-bool giver_answers_for_part(const State& state);
+/// The peer of the record says, now or as an outcome of the past, how the record's handoff ended.
+bool peer_concludes(const State& state, wire::Fact outcome);
+
+/// The giver that this node accepted still offers that token; fresh.
+bool giver_offers(const State& state);
+
+/// That giver says that it has taken the token back; true for ever, so freshness does not matter.
+bool giver_retains(const State& state);
 
 /// Sensors prove that nothing is between the jaws: fully open, fully closed or closed past the part, with no
 /// squeeze; for a passive station every seat switch off.

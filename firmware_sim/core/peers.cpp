@@ -28,6 +28,10 @@ void Peers::hear(const wire::Received<wire::Custody>& custody) {
   Peer* peer = slot_of(custody.label.node);
   if (peer == nullptr) return;
   if (peer->custody_counter.accept(custody.label.counter) != wire::CounterVerdict::Qualified) return;
+  if (custody.message.past()) {
+    peer->past = custody.message;
+    return;
+  }
   peer->custody = custody.message;
   peer->custody_fresh.start(wire::kPeerFresh_ms);
 }

@@ -17,7 +17,8 @@ struct Peer {
   wire::CounterCheck state_counter;
   wire::Countdown custody_fresh;  ///< since the last usable frame: a repeated one must not make the peer lost
   wire::Countdown state_fresh;
-  wire::Custody custody;
+  wire::Custody custody;  ///< the newest that is true now
+  wire::Custody past;     ///< the newest outcome of a handoff that is over (R10)
   wire::NodeState state;
   wire::Countdown faulty;  ///< runs while it reports a fault for which it must hold
 

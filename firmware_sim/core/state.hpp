@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 
+#include "firmware_sim/core/bus_link.hpp"
 #include "firmware_sim/core/config.hpp"
 #include "firmware_sim/core/faults.hpp"
 #include "firmware_sim/core/force_guard.hpp"
@@ -10,6 +11,7 @@
 #include "firmware_sim/core/io.hpp"
 #include "firmware_sim/core/measure.hpp"
 #include "firmware_sim/core/peers.hpp"
+#include "firmware_sim/core/release_guard.hpp"
 #include "firmware_sim/core/state_table.hpp"
 #include "protocol/wire/layout.hpp"
 #include "protocol/wire/messages.hpp"
@@ -59,6 +61,7 @@ struct Receiving {
   std::uint8_t giver = 0;  ///< 15: the operator; 0: none
   std::uint16_t token = 0;
   std::uint16_t pair = 0;
+  bool retained = false;  ///< the giver was heard to take the part back: this node may let go
 };
 
 enum class Flow : std::uint8_t { Shut, Filling, Relieving };
@@ -76,6 +79,7 @@ struct Timers {
   wire::Countdown peer_good;  ///< until G_peer has been true long enough
   wire::Countdown challenge;  ///< a MANUAL_RELEASE may be answered
   wire::Countdown custody;
+  wire::Countdown outcome;
   wire::Countdown status;
   wire::Countdown force;
   wire::Countdown pneumatics;
@@ -122,6 +126,8 @@ struct State {
   Measurement measurement;
   ForceControl control;
   ForceGuard guard;
+  ReleaseGuard release_guard;
+  BusLink bus;
   HostLink host;
   wire::CommandGate gate;
   Peers peers;
@@ -140,11 +146,12 @@ struct State {
   std::uint16_t challenge = 0;
   std::uint8_t bad_hold_ms = 0;  ///< how long F_low has been under F_req
   std::uint8_t identity_page = 0;
-  bool identity_burst = true;   ///< pages follow each other at once
-  bool frozen = false;          ///< HOLD stopped the jaws; the next ARM lets them go on
-  bool opening_wanted = false;  ///< READY: the jaws are on their way to fully open
-  bool hold_proven = false;     ///< the hold was stable at least once since power came
-  bool answer_seen = false;     ///< OFFERED: a TAKE for this token was heard
+  std::uint8_t outcome_next = 0;  ///< of the record's outcomes, the one to repeat next
+  bool identity_burst = true;     ///< pages follow each other at once
+  bool frozen = false;            ///< HOLD stopped the jaws; the next ARM lets them go on
+  bool opening_wanted = false;    ///< READY: the jaws are on their way to fully open
+  bool hold_proven = false;       ///< the hold was stable at least once since power came
+  bool answer_seen = false;       ///< OFFERED: a TAKE for this token was heard
 };
 
 }  // namespace pinjaw::core

@@ -78,6 +78,42 @@ void react(State& state) {
   }
 }
 
+Release release_of(const State& state) {
+  const NvmRecord& record = state.store.record;
+  const wire::LayoutPeer* peer = state.layouts.committed ? state.layouts.layout.peer(record.peer) : nullptr;
+  return {.peer = record.peer,
+          .token = record.token,
+          .pair = record.pair,
+          .peer_required_dn = peer == nullptr ? std::uint16_t{0} : peer->f_required_dn,
+          .decided = record.custody == Custody::Decided};
+}
+
+void mind_bus(State& state, const BusHealth& health, std::uint16_t elapsed_ms) {
+  state.bus.observe(health, elapsed_ms);
+  if (state.bus.fell_off()) apply(state, Event::CmdHold);
+  if (!state.bus.recovered()) return;
+  state.host = {};
+  if (state.layouts.committed) state.peers.follow(state.layouts.layout);
+  state.release_guard = guard_after_reset(state.store.record);
+}
+
+/// Both channels must want an opening, and a decision to be stored.
+Valves release_guarded(const State& state, const Valves& wanted) {
+  if (wanted.spool != Spool::Open) return wanted;
+  const bool stored = state.store.durable();
+  return permits_opening(state.release_guard, state.config, state.store.record, stored) ? wanted : Valves{};
+}
+
+/// What must be stored, but for a decision that only one channel took.
+void store_permitted(State& state, std::optional<NvmWrite>& write) {
+  if (permits_decision(state.release_guard, state.config, state.store.record)) {
+    flush(state.store, state.layouts.layout, write);
+  } else {
+    write.reset();
+    raise(state, wire::FaultCode::MemorySelfTest);  // the channels differ: something computes wrongly
+  }
+}
+
 Valves decide_valves(State& state, const Inputs& inputs) {
   if (state.config.passive) return Valves{};
   const Valves wanted = release_guarded(state, wanted_valves(state, inputs.elapsed_ms));
@@ -94,6 +130,7 @@ void power_on(const Config& config, const NvmImage& image, State& state) {
   state.next_session = record.session_block;
   record.session_block = static_cast<std::uint16_t>(record.session_block + kSessionBlock);
   state.permit_dn = record.permit_dn;
+  state.release_guard = guard_after_reset(record);
   if (image.readable) {
     restore_layout(state, image.layout);
     save(state.store, record);
@@ -115,6 +152,9 @@ void step(State& state, const Inputs& inputs, Outputs& outputs) {
   let_time_pass(state, elapsed_ms);
   acknowledge(state.store, inputs.nvm);
   observe(state.config, inputs.sensors, elapsed_ms, state.measurement);
+  watch(state.release_guard, state.config, release_of(state), inputs.received, inputs.sensors.local_enable,
+        elapsed_ms);
+  mind_bus(state, inputs.bus, elapsed_ms);
   listen(state, inputs, outputs.send);
   track(state, elapsed_ms);
   react(state);
@@ -122,7 +162,8 @@ void step(State& state, const Inputs& inputs, Outputs& outputs) {
   outputs.valves = decide_valves(state, inputs);
   advance_service(state, elapsed_ms, outputs.send);
   report(state, elapsed_ms, outputs.valves, said_before, outputs.send);
-  flush(state.store, state.layouts.layout, outputs.nvm);
+  store_permitted(state, outputs.nvm);
+  outputs.restart_bus = state.bus.restart();
 }
 
 Outputs step(State& state, const Inputs& inputs) {

@@ -4,6 +4,7 @@
 
 #include "firmware_sim/core/force_control.hpp"
 #include "firmware_sim/core/guards.hpp"
+#include "firmware_sim/core/rules.hpp"
 #include "firmware_sim/core/sending.hpp"
 #include "protocol/wire/codec.hpp"
 #include "protocol/wire/reception.hpp"
@@ -158,6 +159,33 @@ void report_faults(State& state, std::uint16_t elapsed_ms, SendQueue& queue) {
   send_cyclic(state, queue, report_of(state, code), state.send_counters.fault);
 }
 
+/// The next of the outcomes that the present fact does not say anyway, if any; they take turns.
+const Outcome* next_outcome(State& state) {
+  const NvmRecord& record = state.store.record;
+  const bool said_now = record.custody == Custody::Released || record.custody == Custody::Retained;
+  for (std::size_t i = 0; i < record.outcomes.size(); ++i) {
+    const std::uint8_t at = state.outcome_next;
+    state.outcome_next = static_cast<std::uint8_t>((at + 1U) % record.outcomes.size());
+    const Outcome& outcome = record.outcomes[at];
+    if (outcome.peer != 0 && !(said_now && at == 0)) return &outcome;
+  }
+  return nullptr;
+}
+
+/// R10: how earlier handoffs ended stays true, so it is repeated for a receiver that missed it.
+void repeat_outcomes(State& state, std::uint16_t elapsed_ms, SendQueue& queue) {
+  if (!is_due(state.timers.outcome, elapsed_ms, wire::kCustodyIdle_ms)) return;
+  if (!state.store.durable() || !state.store.readable || !keeps(Rule::AnnounceOldOutcomes)) return;
+  const Outcome* outcome = next_outcome(state);
+  if (outcome == nullptr) return;
+  const wire::Custody said{.fact = outcome->retained ? wire::Fact::Retain : wire::Fact::Released,
+                           .peer = outcome->peer,
+                           .token = outcome->token,
+                           .pair = outcome->pair,
+                           .f_low_n = std::nullopt};
+  send_cyclic(state, queue, said, state.send_counters.custody);
+}
+
 void report_custody(State& state, std::uint16_t elapsed_ms, bool changed, SendQueue& queue) {
   const std::uint16_t period_ms = in_handoff(state) ? wire::kCustodyHandoff_ms : wire::kCustodyIdle_ms;
   if (changed || state.timers.custody.left_ms() > period_ms) state.timers.custody.stop();
@@ -171,6 +199,7 @@ void report(State& state, std::uint16_t elapsed_ms, const Valves& valves, const 
             SendQueue& queue) {
   report_faults(state, elapsed_ms, queue);
   report_custody(state, elapsed_ms, state.announced != said_before, queue);
+  repeat_outcomes(state, elapsed_ms, queue);
   Timers& timers = state.timers;
   SendCounters& counters = state.send_counters;
   if (is_due(timers.status, elapsed_ms, wire::kStatePeriod_ms)) {

@@ -4,6 +4,7 @@
 
 #include "firmware_sim/core/custody.hpp"
 #include "firmware_sim/core/guards.hpp"
+#include "firmware_sim/core/rules.hpp"
 
 namespace pinjaw::core {
 namespace {
@@ -56,9 +57,19 @@ std::uint16_t move_time_ms(const State& state, std::int32_t to_10um) {
       std::min<std::int32_t>(kMoveBase_ms + travel_10um / kSlowest_10um_per_ms, 60000));
 }
 
+/// Remembers how the handoff of the record ended that this node gave in (R10).
+void remember_outcome(NvmRecord& record, bool retained) {
+  if (record.peer == wire::kOperatorPeer) return;
+  std::copy_backward(record.outcomes.begin(), record.outcomes.end() - 1, record.outcomes.end());
+  record.outcomes[0] = {
+      .retained = retained, .peer = record.peer, .token = record.token, .pair = record.pair};
+}
+
 void record_custody(State& state, Custody custody) {
   NvmRecord record = state.store.record;
   record.custody = custody;
+  if (custody == Custody::Released || custody == Custody::Retained)
+    remember_outcome(record, custody == Custody::Retained);
   record.force_set_dn = state.force_set_dn;
   record.permit_dn = state.permit_dn;
   save(state.store, record);
@@ -89,6 +100,7 @@ void enter_loaded(State& state, Event event) {
   state.force_set_dn = 0;
   if (event == Event::CmdClearEmpty) {
     state.faults.clear_all();
+    state.store.readable = true;  // what it said is settled by there being no part
     record_custody(state, Custody::Empty);
   }
 }
@@ -123,6 +135,7 @@ void enter_seated(State& state, StateId from, Event event) {
   }
   if (from == StateId::Taken) {
     state.faults.clear(wire::FaultCode::InDoubt);
+    state.receiving.retained = true;
     record_custody(state, Custody::Empty);
   }
 }
@@ -139,6 +152,8 @@ void enter_taken(State& state, StateId from) {
   state.timers.state.start(kInDoubt_ms);
   state.hold_proven = from == StateId::Squeezing;
   if (from != StateId::Squeezing) {
+    const NvmRecord& record = state.store.record;
+    state.receiving = {.giver = record.peer, .token = record.token, .pair = record.pair};
     take_up_recorded_force(state);
     return grip_here(state);
   }
@@ -176,7 +191,7 @@ void enter_hold(State& state, StateId from) {
 
 void enter_offered(State& state) {
   NvmRecord& record = state.store.record;
-  ++record.handoff_number;
+  if (keeps(Rule::NewTokenEachOffer)) ++record.handoff_number;
   record.token = record.handoff_number;
   record.pair = state.layouts.layout.peer(record.peer)->pair_crc;
   record_custody(state, Custody::Offered);

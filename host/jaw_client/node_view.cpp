@@ -29,7 +29,8 @@ void NodeView::take(const wire::Received<wire::Force>& received) {
 }
 
 void NodeView::take(const wire::Received<wire::Custody>& received) {
-  if (in_order(wire::MessageType::Custody, received.label.counter)) custody = received.message;
+  if (!in_order(wire::MessageType::Custody, received.label.counter)) return;
+  if (!received.message.past()) custody = received.message;
 }
 
 void NodeView::take(const wire::Received<wire::FaultReport>& received) {

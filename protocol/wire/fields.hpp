@@ -64,7 +64,9 @@ inline constexpr FieldSpec kCustodyFields[] = {
      .length = 8,
      .unit = "N",
      .all_ones_is_unknown = true,
-     .comment = "squeeze that is at least there, sum of both jaws"}};
+     .comment = "squeeze that is at least there, sum of both jaws; unknown with RELEASED or RETAIN: the "
+                "outcome of an "
+                "earlier handoff, repeated every 100 ms for who missed it"}};
 
 inline constexpr FieldSpec kStateFields[] = {
     kCrcField,

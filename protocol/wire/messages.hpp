@@ -66,6 +66,10 @@ struct Custody {
   std::uint16_t pair = 0;
   std::optional<std::uint8_t> f_low_n{};
 
+  /// How a handoff ended that is over; says nothing of now.
+  [[nodiscard]] constexpr bool past() const {
+    return !f_low_n && (fact == Fact::Released || fact == Fact::Retain);
+  }
   template <class Self, class Visitor>
   static constexpr void fields(Self& self, Visitor& visit) {
     visit(detail::row(kType, "FACT"), self.fact);

@@ -74,7 +74,9 @@ void Station::power_on_again() {
 
 void Station::step(const std::vector<wire::Frame>& frames) {
   if (!powered) return jaw.step(Valves{});
-  outputs = core::step(core, {.received = frames, .sensors = jaw.read(), .nvm = stored});
+  const std::vector<wire::Frame> received = bus.off ? std::vector<wire::Frame>{} : frames;
+  outputs = core::step(core, {.received = received, .sensors = jaw.read(), .nvm = stored, .bus = bus});
+  if (bus.off) outputs.send.size = 0;
   if (outputs.nvm) {
     if (memory_fails) {
       stored.failed = true;

@@ -36,6 +36,7 @@ struct Station {
   Outputs outputs;
   bool powered = true;
   bool memory_fails = false;
+  BusHealth bus;  ///< while off, nothing comes or goes
 
   [[nodiscard]] StateId id() const { return core.id; }
   void power_off();

@@ -104,6 +104,9 @@ TEST_F(Recovery, with_a_part_felt_and_no_record_holds_until_the_operator_decides
   bench.run(300);
   ASSERT_EQ(bench.arm().id(), StateId::FaultHold);
   bench.arm_session(kArm);
+  EXPECT_EQ(bench.result_of(kArm, wire::plain_command(wire::Op::ClearFault)), wire::CommandResult::Refused)
+      << "another node may answer for the part";
+  bench.arm().jaw.local_enable = true;
   EXPECT_EQ(bench.result_of(kArm, wire::plain_command(wire::Op::ClearFault)), wire::CommandResult::Ok);
   EXPECT_TRUE(bench.reaches(kArm, StateId::Hold, 10));
   bench.run(1000);

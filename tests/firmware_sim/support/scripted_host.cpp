@@ -44,7 +44,9 @@ template <class Message>
 void ScriptedHost::hear(const wire::Received<Message>& received) {
   Heard& heard = heard_.at(received.label.node);
   if constexpr (std::is_same_v<Message, wire::NodeState>) heard.state = received.message;
-  if constexpr (std::is_same_v<Message, wire::Custody>) heard.custody = received.message;
+  if constexpr (std::is_same_v<Message, wire::Custody>) {
+    if (!received.message.past()) heard.custody = received.message;
+  }
   if constexpr (std::is_same_v<Message, wire::Force>) heard.force = received.message;
   if constexpr (std::is_same_v<Message, wire::FaultReport>) {
     if (received.message.code == wire::FaultCode::ManualRelease) heard.challenge = received.message.argument;
