@@ -24,6 +24,7 @@ node::Figures figures_of(const model::Controller& controller) {
                     .moving_mass_kg = plant.moving_mass_kg,
                     .dead_volume_cm3 = plant.dead_volume_cm3,
                     .spring_n = plant.spring_n,
+                    .keeper_n = plant.keeper_n,
                     .coulomb_friction_n = plant.coulomb_friction_n,
                     .breakaway_friction_n = plant.breakaway_friction_n,
                     .contact_n_mm = plant.contact_n_mm,

@@ -22,6 +22,7 @@ void apply(const PlantFigures& figures, plant::Parameters& parameters) {
   set(parameters.jaw.moving_mass_kg, figures.moving_mass_kg, 1);
   set(parameters.air.dead_volume_m3, figures.dead_volume_cm3, 1e-6);
   set(parameters.air.spring_n, figures.spring_n, 1);
+  set(parameters.air.keeper_n, figures.keeper_n, 1);
   set(parameters.friction.coulomb_n, figures.coulomb_friction_n, 1);
   set(parameters.friction.breakaway_n, figures.breakaway_friction_n, 1);
   set(parameters.jaw.contact_n_m, figures.contact_n_mm, 1e3);

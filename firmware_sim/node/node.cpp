@@ -66,8 +66,8 @@ void Node::set_power(bool on) {
 }
 
 void Node::apply(const Fault& fault) {
-  if (fault.kind == Fault::Kind::NvmFailed) memory_.fail();
-  add_fault(fault, faults_);
+  if (fault.add == nullptr) return memory_.fail();
+  fault.add(fault.value, faults_);
 }
 
 bool Node::moves() const {
@@ -123,9 +123,11 @@ void Node::run_plant(const Surroundings& surroundings) {
                                 .contact = surroundings.contact,
                                 .neighbour_moves = surroundings.neighbour_moves,
                                 .faults = faults_};
+  const bool rests = coasts_ && plant::at_rest(parameters_, inputs, plant_);
+  if (rests) plant::coast(parameters_, inputs, kPlantSteps * plant::kStep_s, plant_);
   truth_.least_n = plant::squeeze_n(plant_);
   truth_.most_n = truth_.least_n;
-  for (int i = 0; i < kPlantSteps; ++i) {
+  for (int i = 0; i < kPlantSteps && !rests; ++i) {
     plant::step(parameters_, inputs, plant::kStep_s, plant_);
     truth_.least_n = std::min(truth_.least_n, plant::squeeze_n(plant_));
     truth_.most_n = std::max(truth_.most_n, plant::squeeze_n(plant_));

@@ -59,6 +59,8 @@ class Node {
 
   /// For tests only: what the firmware believes of its hardware, to switch a guard off.
   core::Config& config_for_tests() { return config_; }
+  /// Whether the plant takes 1 ms in one step while it is at rest, which saves fifty; off: never.
+  void let_coast(bool on) { coasts_ = on; }
   /// For tests only: the hardware, before the first step.
   plant::Parameters& plant_for_tests() { return parameters_; }
 
@@ -73,6 +75,7 @@ class Node {
   plant::Parameters parameters_;
   bus::Bus* bus_;
   bool powered_ = true;
+  bool coasts_ = true;
   Nvm memory_;  // before the firmware, which reads it
   core::State firmware_;
   core::Valves valves_;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+
 #include "firmware_sim/plant/flow.hpp"
 #include "firmware_sim/plant/friction.hpp"
 
@@ -12,11 +14,28 @@ struct Sizing {
   double min_separation_m = 0.0;    ///< jaws fully closed
 };
 
+/// How the air in a chamber answers to flow and stroke.
+enum class AirLaw : std::uint8_t {
+  /// One exponent between slow and fast, no temperature. It keeps neither mass nor energy: a chamber that was
+  /// filled and vented has no more of a memory than its pressure.
+  Polytropic,
+  /// Mass and inner energy of the air, enthalpy at the ports, heat from the walls: both balances close.
+  EnergyBalance,
+};
+
 /// The two cylinder chambers' and the spool's air.
+///
+/// A keeper of 35 to 45 N (study) that always presses would exclude a light squeeze of 12 N, and would close
+/// the open jaws whenever their air is gone. So the keeper's spring stands behind a floating piston with a
+/// catch: a squeeze of `keeper_engage_share` times its force lets it go, air on the open side draws it back.
+/// Let go, it gives what the air lacks of `keeper_n` and nothing more, so that the controller need not know of
+/// it: what it infers from pressure is then low, never high. Its price: after RETAIN the receiver's light
+/// squeeze is the keeper's until it opens.
 struct AirParameters {
   double close_area_m2 = 0;  ///< effective: sum of both jaws' force per Pa, lever losses included
   double open_area_m2 = 0;
-  double dead_volume_m3 = 4e-6;                     // study: 1.5 cm3 dead and 2.5 cm3 hose
+  double dead_volume_m3 = 4e-6;  // study: 1.5 cm3 dead and 2.5 cm3 hose
+  AirLaw law = AirLaw::Polytropic;
   double polytropic = 1.2;                          // the same: between 1.0 (slow) and 1.4 (fast)
   Restriction fill{0.01 * kDm3PerSecondBar, 0.3};   // the same: orifice in the close line, 0.45 N/ms at most
   Restriction relax{0.05 * kDm3PerSecondBar, 0.3};  // the same, throttled 5/2: the close chamber's way out
@@ -27,7 +46,11 @@ struct AirParameters {
   double relief_pa = 0;                                 ///< gauge, of the close chamber
   Restriction relief{0.3 * kDm3PerSecondBar, 0.3};      // SY3000-class seat, wide open
   double relief_span = 0.03;                            // chosen: wide open 3 % above where it starts
-  double spring_n = 0;  ///< keeper; 0 since a keeper of 35 to 45 N excludes a light squeeze of 12 N
+  double wall_w_K = 0.4;              // chosen: 60 cm2 of hose and cylinder at 60 W/(m2 K); 60 ms at 6 bar
+  double spring_n = 0;                ///< closing and always there; the lightest squeeze is not under it
+  double keeper_n = 0;                ///< the spring behind a catch; 0: none
+  double keeper_engage_share = 1.25;  // chosen: no jump of force where the catch lets go
+  double keeper_release_pa = 1e5;     // chosen: gauge, on the open side
 };
 
 struct RegulatorParameters {

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "firmware_sim/plant/faults.hpp"
 #include "firmware_sim/plant/noise.hpp"
 #include "firmware_sim/plant/parameters.hpp"
 
@@ -12,10 +13,6 @@
 /// The coordinate is the displacement x of each jaw from fully open, so the separation is s_max - 2x, and
 /// every force is the sum of both jaws. Pressures are absolute inside, gauge where a name says so.
 namespace pinjaw::plant {
-
-/// Positions of the main spool. Hold is where the spring puts it without current: the close chamber is shut
-/// in by its check valve, the open chamber is vented, so that nothing opens.
-enum class Spool : std::uint8_t { Hold, Close, Open };
 
 /// What the controller's outputs do.
 struct Actuation {
@@ -34,16 +31,6 @@ struct Contact {
   double offset_m = 0;      ///< of a fixed part from the jaws' centre, towards the right jaw
 };
 
-/// Faults of the hardware; all of them default to none.
-struct Faults {
-  Restriction close_leak{0, 0.3};  ///< close chamber to the room
-  bool spool_stuck = false;        ///< stays where it is
-  bool regulator_open = false;     ///< stuck open: full supply
-  bool supply_lost = false;
-  std::array<double, 2> close_sensor_offset_pa{};  ///< beside the drawn one; sensors A and B
-  bool position_stuck = false;
-};
-
 struct Inputs {
   Actuation actuation;
   Contact contact;
@@ -59,12 +46,27 @@ struct Readings {
   double separation_m = 0;
 };
 
+/// What crossed the two chambers' ports and walls so far, for balances; nothing in the plant reads it.
+struct Ledger {
+  double mass_in_kg = 0;
+  double mass_out_kg = 0;
+  double enthalpy_in_j = 0;  ///< this and the next two with AirLaw::EnergyBalance only
+  double enthalpy_out_j = 0;
+  double wall_heat_j = 0;    ///< from the walls into the air
+  double piston_work_j = 0;  ///< of the air in both chambers on the piston
+  double friction_j = 0;     ///< from the jaws into friction, what its bristles store included
+  double stops_j = 0;        ///< the same into part and end stops
+};
+
 /// Everything that changes. A plain value: a copy is a snapshot.
 struct State {
   double displacement_m = 0;
   double speed_m_s = 0;
   double close_pa = kAtmosphere_Pa;
   double open_pa = kAtmosphere_Pa;
+  double close_K = kTemperature_K;  ///< stays with AirLaw::Polytropic, which has no temperature
+  double open_K = kTemperature_K;
+  bool keeper_engaged = false;
   FrictionState friction;
 
   double supply_pa = 0;  ///< absolute
@@ -81,10 +83,12 @@ struct State {
 
   double left_n = 0;  ///< true contact force on each jaw
   double right_n = 0;
-  double mass_in_kg = 0;  ///< air let into the two chambers, less what left
+  Ledger ledger;
 
   std::array<double, 4> sensed_pa{};  ///< after the filters: close A, B, open A, B; gauge
   double sensed_position_m = 0;
+  std::array<double, 4> sensor_drift_pa{};  ///< that a fault has built up
+  double position_drift_m = 0;
 
   double regulator_gain_error = 0;
   std::array<double, 4> sensor_offset_pa{};
@@ -99,6 +103,14 @@ void step(const Parameters& parameters, const Inputs& inputs, double dt_s, State
 
 /// One reading of the sensors, with fresh noise.
 Readings read(const Parameters& parameters, const Faults& faults, State& state);
+
+/// Nothing in the plant acts on the jaws or will by itself: both chambers are shut in or vented, the valve is
+/// at rest, and the jaws stand in balance.
+bool at_rest(const Parameters& parameters, const Inputs& inputs, const State& state);
+
+/// As `step`, of a plant at rest: what acts on the jaws stays, and a millisecond is one step of what is left
+/// (supply, regulator, sensors, the seals' age).
+void coast(const Parameters& parameters, const Inputs& inputs, double dt_s, State& state);
 
 constexpr double kStep_s = 20e-6;  // study: stable with the stiffest contact
 

@@ -45,6 +45,7 @@ void step_regulator(const Parameters& parameters, const Inputs& inputs, double d
     state.followed_set_pa = set_pa + side * regulator.hysteresis_pa;
   }
   if (set_pa <= 0.0) state.followed_set_pa = 0.0;
+  if (inputs.faults.regulator == RegulatorFault::Stuck) return;
   const double goal_pa = state.followed_set_pa * (1.0 + state.regulator_gain_error);
   state.regulator_inner_pa += (goal_pa - state.regulator_inner_pa) * dt_s / regulator.first_lag_s;
   state.regulator_pa += (state.regulator_inner_pa - state.regulator_pa) * dt_s / regulator.second_lag_s;
@@ -56,7 +57,8 @@ double supply_pa(const State& state) {
 
 double regulator_outlet_pa(const Inputs& inputs, const State& state) {
   const double reached_pa = supply_pa(state);
-  if (inputs.faults.regulator_open) return reached_pa;
+  if (inputs.faults.regulator == RegulatorFault::Open) return reached_pa;
+  if (inputs.faults.regulator == RegulatorFault::Closed) return kAtmosphere_Pa;
   return std::min(reached_pa, kAtmosphere_Pa + state.regulator_pa);
 }
 

@@ -37,6 +37,7 @@ model::PlantFigures read_plant(YamlMap map) {
   read("moving_mass_kg", "a mass", 100, plant.moving_mass_kg);
   read("dead_volume_cm3", "a volume", 1000, plant.dead_volume_cm3);
   read("spring_n", "a force", 1000, plant.spring_n);
+  read("keeper_n", "a force", 1000, plant.keeper_n);
   read("coulomb_friction_n", "a force", 1000, plant.coulomb_friction_n);
   read("breakaway_friction_n", "a force", 1000, plant.breakaway_friction_n);
   read("contact_n_mm", "a stiffness", 1e6, plant.contact_n_mm);

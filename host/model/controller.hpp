@@ -13,7 +13,8 @@ struct PlantFigures {
   std::optional<double> supply_droop_bar;  ///< while a neighbour moves
   std::optional<double> moving_mass_kg;
   std::optional<double> dead_volume_cm3;  ///< of each chamber, hose included
-  std::optional<double> spring_n;         ///< keeper
+  std::optional<double> spring_n;         ///< always presses
+  std::optional<double> keeper_n;         ///< behind a catch: gives what the air lacks of it
   std::optional<double> coulomb_friction_n;
   std::optional<double> breakaway_friction_n;
   std::optional<double> contact_n_mm;

@@ -1,20 +1,51 @@
 // Promises: SIM.
 #include "firmware_sim/node/fault_spec.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <set>
+#include <sstream>
 
 namespace pinjaw::node {
 namespace {
 
 using ::testing::HasSubstr;
 
+/// The listed faults, each with a value where it takes one.
+std::vector<std::string> listed() {
+  std::vector<std::string> names;
+  std::istringstream list(known_faults());
+  for (std::string name; std::getline(list >> std::ws, name, ',');) {
+    const auto equals = name.find('=');
+    names.push_back(equals == std::string::npos ? name : name.substr(0, equals) + "=0.5");
+  }
+  return names;
+}
+
 TEST(FaultSpec, reads_every_fault_that_it_lists) {
-  for (const char* text : {"leak=0.05", "spool_stuck", "regulator_open", "supply_lost", "sensor_a=300",
-                           "sensor_b=-300", "position_stuck", "nvm_failed"}) {
-    EXPECT_TRUE(parse_fault(text)) << text;
-    const std::string name = std::string(text).substr(0, std::string(text).find('='));
-    EXPECT_THAT(known_faults(), HasSubstr(name));
+  EXPECT_GT(listed().size(), 30U);
+  for (const std::string& text : listed()) EXPECT_TRUE(parse_fault(text)) << text;
+}
+
+TEST(FaultSpec, no_two_names_do_the_same) {
+  std::set<std::string> seen;
+  for (const std::string& text : listed()) {
+    const Fault fault = *parse_fault(text);
+    plant::Faults faults{};
+    if (fault.add != nullptr) fault.add(fault.value, faults);
+    std::string print =
+        fmt::format("{} {} {} {} {} {} {}", faults.close_leak.conductance_m3_s_pa, faults.spool_stuck,
+                    faults.spool_sticks_at ? static_cast<int>(*faults.spool_sticks_at) : -1,
+                    static_cast<int>(faults.relax), static_cast<int>(faults.vent),
+                    static_cast<int>(faults.cut), static_cast<int>(faults.regulator));
+    print += fmt::format(" {}", faults.supply_lost);
+    for (const plant::SensorFault* sensor : {&faults.pressure[0], &faults.pressure[1], &faults.pressure[2],
+                                             &faults.pressure[3], &faults.position}) {
+      print += fmt::format(" {} {} {} {}", sensor->offset, sensor->drift_per_s, sensor->stuck, sensor->lost);
+    }
+    EXPECT_TRUE(seen.insert(print).second) << text;
   }
 }
 
@@ -30,12 +61,14 @@ TEST(FaultSpec, says_what_is_wrong) {
 
 TEST(FaultSpec, faults_add_up) {
   plant::Faults faults;
-  add_fault(*parse_fault("sensor_a=300"), faults);
-  add_fault(*parse_fault("spool_stuck"), faults);
-  add_fault(*parse_fault("leak=0.6"), faults);
-  EXPECT_EQ(faults.close_sensor_offset_pa[0], 30000);
+  for (const char* text : {"sensor_a=300", "spool_stuck", "leak=0.6", "position_drift=-2"}) {
+    const Fault fault = *parse_fault(text);
+    fault.add(fault.value, faults);
+  }
+  EXPECT_EQ(faults.pressure[0].offset, 30000);
   EXPECT_TRUE(faults.spool_stuck);
   EXPECT_DOUBLE_EQ(faults.close_leak.conductance_m3_s_pa, 1e-12);
+  EXPECT_DOUBLE_EQ(faults.position.drift_per_s, -2e-3);
   EXPECT_FALSE(faults.supply_lost);
 }
 

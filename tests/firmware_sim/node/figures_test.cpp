@@ -38,11 +38,14 @@ TEST(Figures, a_passive_station_has_three_seats_and_no_force) {
 }
 
 TEST(Figures, what_a_file_says_of_the_plant_replaces_the_plant_s_own) {
-  const plant::Parameters parameters = plant_parameters(
-      {.plant = {
-           .supply_bar = 5.5, .spring_n = 3, .contact_n_mm = 1000, .close_conductance_dm3_s_bar = 0.02}});
+  const plant::Parameters parameters = plant_parameters({.plant = {.supply_bar = 5.5,
+                                                                   .spring_n = 3,
+                                                                   .keeper_n = 40,
+                                                                   .contact_n_mm = 1000,
+                                                                   .close_conductance_dm3_s_bar = 0.02}});
   EXPECT_DOUBLE_EQ(parameters.supply.nominal_pa, 5.5e5);
   EXPECT_DOUBLE_EQ(parameters.air.spring_n, 3);
+  EXPECT_DOUBLE_EQ(parameters.air.keeper_n, 40);
   EXPECT_DOUBLE_EQ(parameters.jaw.contact_n_m, 1e6);
   EXPECT_DOUBLE_EQ(parameters.air.fill.conductance_m3_s_pa, 0.02e-8);
   EXPECT_EQ(core_config({.plant = {.spring_n = 3}}).spring_dn, 30);

@@ -18,7 +18,7 @@ Stand plain_valve(double dm3_s_bar) {
   air.relief_pa = 20e5;
   stand.state.open_pa = kAtmosphere_Pa + 6e5;
   stand.parameters.spool = {.on_delay_s = 0, .off_delay_s = 0};
-  stand.inputs.faults.regulator_open = true;
+  stand.inputs.faults.regulator = RegulatorFault::Open;
   stand.inputs.actuation = {.spool = Spool::Close, .close_set_pa = 6e5};
   return stand;
 }
