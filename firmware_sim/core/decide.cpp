@@ -103,7 +103,7 @@ Answer check_offer(const State& state, const wire::Command& command) {
 /// The jaws may open again only while somebody else answers for the part, or nothing is there.
 Answer check_abort(const State& state) {
   if (state.id == StateId::Offered || state.id == StateId::Relax) return kOk;
-  if (state.id == StateId::FaultEmpty) {
+  if (state.id == StateId::FaultEmpty || state.id == StateId::FaultHold) {
     if (has_custody(state.store.record.custody)) return refused(Reason::PartHeld);
     if (degraded(state) || state.store.failed) return refused(Reason::CauseRemains);
   }

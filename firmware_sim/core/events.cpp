@@ -188,8 +188,14 @@ void track_hold(State& state, std::uint16_t elapsed_ms) {
   }
 }
 
-void track_peer(State& state, std::uint16_t elapsed_ms) {
+/// The part that another answers for is this node's concern until the jaws are away from it.
+void track_giver(State& state) {
   if (giver_retains(state)) state.receiving.retained = true;
+  const bool open = state.id == StateId::Loaded || state.id == StateId::Ready;
+  if (open && state.layouts.committed && clear_of_part(state)) state.receiving = {};
+}
+
+void track_peer(State& state, std::uint16_t elapsed_ms) {
   if (state.id != StateId::Offered) return;
   if (peer_says(state, wire::Fact::Take)) state.answer_seen = true;
   if (peer_holds(state)) {
@@ -203,6 +209,7 @@ void track_peer(State& state, std::uint16_t elapsed_ms) {
 
 void track(State& state, std::uint16_t elapsed_ms) {
   track_hold(state, elapsed_ms);
+  track_giver(state);
   track_peer(state, elapsed_ms);
   follow(state, wire::FaultCode::HostLost, !state.host.alive());
   follow(state, wire::FaultCode::SupplyAirLow, state.measurement.supply_low);

@@ -18,7 +18,7 @@ consteval StateTable rows() {
     /* CmdAccept             */ {Re, Re, Re, Re, Sg, Re, Re, Re, Re, Re, Re, Re, Re, Re, Re, Re},
     /* CmdSqueeze            */ {Re, Re, Re, Re, Re, Re, Sq, Re, Re, Re, Re, Re, Re, Re, Re, Re},
     /* CmdOffer              */ {Re, Re, Re, Re, Re, Re, Re, Re, Re, Of, Re, Re, Re, Re, Re, Re},
-    /* CmdAbort              */ {Re, Re, Re, Re, Re, Rd, Rd, Re, Re, Re, Hd, Rs, Re, Re, Re, Rd},
+    /* CmdAbort              */ {Re, Re, Re, Re, St, Rd, Rd, Re, Re, Re, Hd, Rs, Re, Re, Rd, Rd},
     /* CmdOpenEmpty          */ {Re, Re, Re, Re, St, Re, Re, Re, Re, Re, Re, Re, Re, Re, Re, St},
     /* CmdClearFault         */ {Re, St, St, St, St, St, St, St, St, St, St, St, St, St, Rc, Re},
     /* CmdClearEmpty         */ {Re, Re, Re, Re, Re, Re, Re, Re, Re, Re, Re, Re, Re, Re, Ld, Ld},
@@ -110,13 +110,16 @@ static_assert(everywhere([](StateId state, Event event, Reaction r) {
               }),
               "jaws open only after a decision, stored before or taken now, or by the operator's hand");
 
-static_assert(
-    everywhere([](StateId state, Event event, Reaction r) {
-      if (r.kind != ReactionKind::Go || !holds(state) || grips(r.next)) return true;
-      return (r.next == StateId::Opening) || (state == StateId::Taken && event == Event::PeerRetained) ||
-             (state == StateId::FaultHold && event == Event::CmdClearEmpty);
-    }),
-    "who answers for a part lets go only by decision, by its giver's RETAIN, or with no part there");
+static_assert(everywhere([](StateId state, Event event, Reaction r) {
+                if (r.kind != ReactionKind::Go || !holds(state) || grips(r.next)) return true;
+                return (r.next == StateId::Opening) ||
+                       (state == StateId::Taken && event == Event::PeerRetained) ||
+                       (state == StateId::FaultHold &&
+                        (event == Event::CmdClearEmpty || event == Event::CmdAbort));
+              }),
+              "who answers for a part lets go only by decision, by its giver's RETAIN, with no part there, "
+              "or with a part that "
+              "by the record another answers for");
 
 static_assert(everywhere([](StateId, Event event, Reaction r) {
                 return !is_silence(event) || r.kind != ReactionKind::Go ||

@@ -130,6 +130,9 @@ void power_on(const Config& config, const NvmImage& image, State& state) {
   state.next_session = record.session_block;
   record.session_block = static_cast<std::uint16_t>(record.session_block + kSessionBlock);
   state.permit_dn = record.permit_dn;
+  if (record.custody == Custody::Empty) {
+    state.receiving = {.giver = record.peer, .token = record.token, .pair = record.pair};
+  }
   state.release_guard = guard_after_reset(record);
   if (image.readable) {
     restore_layout(state, image.layout);

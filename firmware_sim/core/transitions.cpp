@@ -95,12 +95,15 @@ void take_up_recorded_force(State& state) {
 void enter_loaded(State& state, Event event) {
   end_session(state);
   state.opening_wanted = false;
-  state.receiving = {};
   state.permit_dn = 0;
   state.force_set_dn = 0;
   if (event == Event::CmdClearEmpty) {
     state.faults.clear_all();
     state.store.readable = true;  // what it said is settled by there being no part
+    state.store.record.peer = 0;
+    state.store.record.token = 0;
+    state.store.record.pair = 0;
+    state.receiving = {};
     record_custody(state, Custody::Empty);
   }
 }
@@ -108,7 +111,6 @@ void enter_loaded(State& state, Event event) {
 void enter_ready(State& state, Event event) {
   state.permit_dn = 0;
   state.force_set_dn = 0;
-  state.receiving = {};
   state.opening_wanted = !state.config.passive && event != Event::CmdArmReady;
   if (event == Event::Opened) record_custody(state, Custody::Released);
   if (event == Event::CmdAbort) state.faults.clear_all();
@@ -120,6 +122,9 @@ void enter_seating(State& state) {
   state.timers.state.start(move_time_ms(state, state.layouts.layout.separation_contact_10um));
   NvmRecord record = state.store.record;
   record.custody = Custody::Empty;
+  record.peer = state.receiving.giver;  // who answers for the part that the jaws now close on
+  record.token = state.receiving.token;
+  record.pair = state.receiving.pair;
   if (state.receiving.giver != wire::kOperatorPeer) {
     remember_token(record, state.receiving.giver, state.receiving.token);
   }
@@ -166,6 +171,7 @@ void enter_taken(State& state, StateId from) {
 void enter_hold(State& state, StateId from) {
   switch (from) {
     case StateId::Squeezing:
+      state.receiving = {};
       state.store.record.peer = wire::kOperatorPeer;
       state.store.record.token = 0;
       state.store.record.pair = 0;
@@ -173,6 +179,7 @@ void enter_hold(State& state, StateId from) {
       record_custody(state, Custody::Sole);
       break;
     case StateId::Taken:
+      state.receiving = {};
       state.hold_proven = true;
       state.faults.clear(wire::FaultCode::InDoubt);
       record_custody(state, Custody::Sole);
@@ -254,7 +261,8 @@ void stay(State& state, Event event) {
     case Event::CmdCommit:
       return enter_loaded(state, event);
     case Event::CmdOpenEmpty:
-      state.opening_wanted = true;
+    case Event::CmdAbort:
+      state.opening_wanted = !state.config.passive;
       return;
     case Event::Opened:
       return record_custody(state, Custody::Released);

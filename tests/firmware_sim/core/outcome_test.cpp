@@ -63,6 +63,63 @@ TEST_F(Outcomes, let_a_receiver_that_was_off_open_again) {
   EXPECT_TRUE(bench.reaches(kPedestal, StateId::Ready, 10));
 }
 
+TEST_F(Outcomes, let_a_receiver_go_on_opening_that_was_stopped_on_its_way) {
+  latch_pedestal_and_cut_its_power();
+  ASSERT_TRUE(bench.reaches(kArm, StateId::Hold));
+  bench.pedestal().power_on_again();
+  ASSERT_TRUE(bench.reaches(kPedestal, StateId::Seated, 1000));
+  bench.run(100);
+  bench.arm_session(kPedestal);
+  ASSERT_EQ(bench.result_of(kPedestal, wire::plain_command(wire::Op::Abort)), wire::CommandResult::Ok);
+  bench.command(kPedestal, wire::hold_command());  // the jaws are still at the part
+  bench.run(100);
+  bench.arm_session(kPedestal);
+  ASSERT_EQ(bench.pedestal().id(), StateId::Ready);
+  EXPECT_EQ(bench.result_of(kPedestal, wire::accept_command(kArm)), wire::CommandResult::Refused);
+  EXPECT_EQ(bench.result_of(kPedestal, wire::plain_command(wire::Op::Abort)), wire::CommandResult::Ok);
+  EXPECT_TRUE(bench.run_until(2000, [&] { return bench.pedestal().jaw.separation_10um > 4900; }));
+}
+
+/// Power goes while the jaws press lightly on a part that the giver answers for: no record of custody, a part
+/// felt.
+TEST_F(Outcomes, let_a_receiver_open_that_lost_power_before_it_latched) {
+  bench.arm_session(kPedestal);
+  bench.bring_part(kPedestal, true);
+  bench.command(kArm, wire::offer_command(kPedestal));
+  bench.run(100);
+  bench.command(kPedestal, wire::accept_command(kArm));
+  ASSERT_TRUE(bench.reaches(kPedestal, StateId::Seated));
+  bench.pedestal().power_off();
+  bench.run(20);
+  bench.pedestal().power_on_again();
+  bench.run(300);
+  ASSERT_EQ(bench.pedestal().id(), StateId::FaultHold);
+  bench.arm_session(kPedestal);
+  EXPECT_EQ(bench.result_of(kPedestal, wire::plain_command(wire::Op::ClearFault)),
+            wire::CommandResult::Refused)
+      << "it would become a second custodian";
+  EXPECT_EQ(bench.result_of(kPedestal, wire::plain_command(wire::Op::Abort)), wire::CommandResult::Ok);
+  EXPECT_TRUE(bench.run_until(2000, [&] { return bench.pedestal().jaw.separation_10um > 4900; }));
+  EXPECT_EQ(bench.arm().id(), StateId::Offered);
+}
+
+TEST_F(Outcomes, of_another_token_do_not_let_it_open) {
+  bench.arm_session(kPedestal);
+  bench.bring_part(kPedestal, true);
+  bench.command(kArm, wire::offer_command(kPedestal));
+  bench.run(100);
+  bench.command(kPedestal, wire::accept_command(kArm));
+  ASSERT_TRUE(bench.reaches(kPedestal, StateId::Seated));
+  bench.pedestal().power_off();
+  NvmRecord record = *bench.pedestal().memory.record;
+  --record.token;
+  bench.pedestal().memory.record = record;
+  bench.pedestal().power_on_again();
+  bench.run(300);
+  bench.arm_session(kPedestal);
+  EXPECT_EQ(bench.result_of(kPedestal, wire::plain_command(wire::Op::Abort)), wire::CommandResult::Refused);
+}
+
 TEST_F(Outcomes, survive_a_restart_of_the_giver) {
   latch_pedestal_and_cut_its_power();
   ASSERT_TRUE(bench.reaches(kArm, StateId::Hold));

@@ -85,6 +85,7 @@ const std::vector<Row>& specified() {
       {Opening, Event::StoreFault, FaultHold},
       {FaultHold, Event::CmdClearFault, Recover},
       {FaultHold, Event::CmdClearEmpty, Loaded},
+      {FaultHold, Event::CmdAbort, Ready},
       {FaultEmpty, Event::CmdClearEmpty, Loaded},
       {FaultEmpty, Event::CmdAbort, Ready},
   };
