@@ -37,13 +37,14 @@ struct Config {
   std::int32_t ramp_dn_per_ms = 5;  ///< section 3: at most 0.5 N/ms
   std::int32_t hold_band_dn = 10;   ///< chosen: half the dead band while holding, several times sensor noise
 
-  /// The state machine; tests hand in mistaken ones.
-  const StateTable* table = &kStateTable;
-
   /// For tests only: shows that the guard, and nothing else, keeps the force in its limits.
   bool force_guard_enabled = true;
   /// For tests only: shows what the other channel does alone.
   bool release_guard_enabled = true;
+
+  /// The state machine; tests hand in mistaken ones. The last member, so that all others lie alike in memory
+  /// whatever the size of a pointer.
+  const StateTable* table = &kStateTable;
 };
 
 }  // namespace pinjaw::core

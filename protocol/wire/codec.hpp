@@ -156,7 +156,7 @@ template <class T>
     if (raw == ones(field.length)) return std::nullopt;
     return static_cast<typename T::value_type>(raw);
   } else if constexpr (std::is_same_v<T, FaultCode>) {
-    return field.length == 8 ? kFaultCodes[raw] : static_cast<FaultCode>(raw);
+    return field.length == 8 ? kFaultCodes[static_cast<std::size_t>(raw)] : static_cast<FaultCode>(raw);
   } else if constexpr (std::is_same_v<T, Fact>) {
     return raw == ones(field.length) ? Fact::Unknown : static_cast<Fact>(raw);
   } else {
@@ -219,17 +219,6 @@ constexpr std::uint64_t header_mask(Protection protection) {
   return protection == Protection::Counter ? 0xFFFFU : 0xFFU;
 }
 
-/// What every frame must satisfy before its fields are looked at.
-[[gnu::noinline]] constexpr std::optional<FrameError> header_error(const Frame& frame,
-                                                                   Identifier identifier) {
-  if (frame.length != 8) return FrameError::Length;
-  if (frame.data[0] != checksum(identifier, frame.data)) return FrameError::Checksum;
-  if (address_of(identifier.type).protection != Protection::Counter) return std::nullopt;
-  if (frame.data[1] >> 4 != kProtocolVersion) return FrameError::Version;
-  if ((frame.data[1] & 0xFU) > kCounterField.largest()) return FrameError::Counter;
-  return std::nullopt;
-}
-
 }  // namespace detail
 
 /// Which message a frame would be by its id alone; its content is not yet checked.
@@ -241,36 +230,67 @@ constexpr Result<Identifier, FrameError> identify(const Frame& frame) {
   return *identifier;
 }
 
+namespace detail {
+
+// What all messages have in common stands in functions of its own: once in a controller's flash.
+
+/// What every frame must satisfy before its fields are looked at; then `reader` is ready for them.
+[[gnu::noinline]] constexpr std::optional<FrameError> open(const Frame& frame, MessageType type, Label& label,
+                                                           Reader& reader) {
+  const auto identifier = identify(frame);
+  if (!identifier) return identifier.error();
+  if (identifier->type != type) return FrameError::UnknownId;
+  if (frame.length != 8) return FrameError::Length;
+  if (frame.data[0] != checksum(*identifier, frame.data)) return FrameError::Checksum;
+  const Protection protection = address_of(type).protection;
+  label.node = identifier->node;
+  if (protection == Protection::Counter) {
+    if (frame.data[1] >> 4 != kProtocolVersion) return FrameError::Version;
+    label.counter = frame.data[1] & 0xFU;
+    if (label.counter > kCounterField.raw_maximum) return FrameError::Counter;
+  }
+  reader = {.word = to_word(frame.data), .seen = header_mask(protection)};
+  return std::nullopt;
+}
+
+/// What every frame must satisfy once its fields were read.
+[[gnu::noinline]] constexpr std::optional<FrameError> close(const Reader& reader) {
+  if (!reader.legal) return FrameError::Value;
+  if ((reader.word & ~reader.seen) != 0) return FrameError::Reserved;
+  return std::nullopt;
+}
+
+/// The frame of written fields.
+[[gnu::noinline]] constexpr Frame seal(std::uint64_t word, MessageType type, Label label) {
+  const Identifier identifier{type, label.node};
+  if (address_of(type).protection == Protection::Counter) {
+    word |= std::uint64_t{(label.counter & 0xFU) | unsigned{kProtocolVersion} << 4} << kCounterField.start;
+  }
+  Frame frame{.id = id_of(identifier), .data = to_payload(word)};
+  frame.data[0] = checksum(identifier, frame.data);
+  return frame;
+}
+static_assert(kVersionField.start == kCounterField.start + 4);
+
+}  // namespace detail
+
 /// The frame that says `message`.
 /// Preconditions: label.node 1..14 (0 for the host's messages, 0..15 for GlobalHold), label.counter 0..14.
 template <class Message>
 constexpr Frame pack(const Message& message, Label label) {
-  constexpr const MessageSpec& kSpec = spec_of(Message::kType);
   detail::Writer writer;
   Message::fields(message, writer);
-  if constexpr (kSpec.protection == Protection::Counter) {
-    writer.word |= std::uint64_t{label.counter & 0xFU} << kCounterField.start;
-    writer.word |= std::uint64_t{kProtocolVersion} << kVersionField.start;
-  }
-  Frame frame{.id = id_of({Message::kType, label.node}), .data = to_payload(writer.word)};
-  frame.data[0] = detail::checksum({Message::kType, label.node}, frame.data);
-  return frame;
+  return detail::seal(writer.word, Message::kType, label);
 }
 
 /// The message that `frame` says, or the first thing wrong with it; UnknownId where it is another message's.
 template <class Message>
 constexpr Result<Received<Message>, FrameError> parse(const Frame& frame) {
-  constexpr const MessageSpec& kSpec = spec_of(Message::kType);
-  const auto identifier = identify(frame);
-  if (!identifier) return identifier.error();
-  if (identifier->type != Message::kType) return FrameError::UnknownId;
-  if (const auto error = detail::header_error(frame, *identifier)) return *error;
-  Received<Message> received{.label = {.node = identifier->node}, .message = {}};
-  if constexpr (kSpec.protection == Protection::Counter) received.label.counter = frame.data[1] & 0xFU;
-  detail::Reader reader{.word = to_word(frame.data), .seen = detail::header_mask(kSpec.protection)};
+  detail::Reader reader;
+  Received<Message> received{};
+  if (const auto error = detail::open(frame, Message::kType, received.label, reader)) return *error;
   Message::fields(received.message, reader);
-  if (!reader.legal) return FrameError::Value;
-  if ((reader.word & ~reader.seen) != 0) return FrameError::Reserved;
+  if (const auto error = detail::close(reader)) return *error;
   return received;
 }
 

@@ -7,8 +7,9 @@
 namespace pinjaw::wire {
 
 namespace detail {
+// Not inlined: the stack holds one message, not one of each.
 template <class Message, class Handler>
-constexpr std::optional<FrameError> parse_into(const Frame& frame, Handler& handler) {
+[[gnu::noinline]] constexpr std::optional<FrameError> parse_into(const Frame& frame, Handler& handler) {
   const auto received = parse<Message>(frame);
   if (!received) return received.error();
   handler(*received);
