@@ -46,7 +46,10 @@ void Peers::hear(const wire::Received<wire::NodeState>& state) {
 
 void Peers::hear(const wire::Received<wire::FaultReport>& fault) {
   Peer* peer = slot_of(fault.label.node);
-  if (peer == nullptr || fault.message.severity < wire::Severity::Hold) return;
+  if (peer == nullptr) return;
+  // A fault is believed before three reports are in order: they are rare, and doubt is the safe side.
+  if (peer->fault_counter.accept(fault.label.counter) == wire::CounterVerdict::Discarded) return;
+  if (fault.message.severity < wire::Severity::Hold) return;
   if (fault.message.active) {
     peer->faulty.start(kFaultKept_ms);
   } else {

@@ -15,6 +15,7 @@ namespace pinjaw::core {
 struct Peer {
   wire::CounterCheck custody_counter;
   wire::CounterCheck state_counter;
+  wire::CounterCheck fault_counter;
   wire::Countdown custody_fresh;  ///< since the last usable frame: a repeated one must not make the peer lost
   wire::Countdown state_fresh;
   wire::Custody custody;  ///< the newest that is true now

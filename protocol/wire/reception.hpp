@@ -21,7 +21,9 @@ enum class CounterVerdict : std::uint8_t {
 };
 
 /// Accepts counters that rise by 1 to 3 (two losses); after anything else, and at the start, three in a row
-/// are needed. The very first frame counts as the first of three: nothing contradicts it.
+/// are needed. The very first frame counts as the first of three: nothing contradicts it. A single frame out
+/// of order does not move the row: what goes on from before it is in order, so that the row is whole again
+/// with the third frame. Only where a second one goes on from it does it begin a new row.
 class CounterCheck {
  public:
   static constexpr std::uint8_t kLargestStep = 3;
@@ -29,14 +31,16 @@ class CounterCheck {
 
   /// Precondition: counter 0..14.
   constexpr CounterVerdict accept(std::uint8_t counter) {
-    const unsigned step = (kCounterModulus + unsigned{counter} - last_) % kCounterModulus;
-    const bool in_order = !heard_ || (step >= 1 && step <= kLargestStep);
-    heard_ = true;
-    last_ = counter;
-    if (!in_order) {
+    const bool in_order = !heard_ || follows(counter, last_);
+    if (!in_order && !(strayed_ && follows(counter, stray_))) {
       in_a_row_ = 0;
+      strayed_ = true;
+      stray_ = counter;
       return CounterVerdict::Discarded;
     }
+    heard_ = true;
+    strayed_ = false;
+    last_ = counter;
     if (in_a_row_ < kInARow) ++in_a_row_;
     return qualified() ? CounterVerdict::Qualified : CounterVerdict::Qualifying;
   }
@@ -45,9 +49,16 @@ class CounterCheck {
   friend constexpr bool operator==(const CounterCheck&, const CounterCheck&) = default;
 
  private:
+  static constexpr bool follows(std::uint8_t counter, std::uint8_t last) {
+    const unsigned step = (kCounterModulus + unsigned{counter} - last) % kCounterModulus;
+    return step >= 1 && step <= kLargestStep;
+  }
+
   std::uint8_t last_ = 0;
+  std::uint8_t stray_ = 0;  ///< of the last frame out of order
   std::uint8_t in_a_row_ = 0;
   bool heard_ = false;
+  bool strayed_ = false;  ///< the last frame was out of order
 };
 
 /// A CounterCheck with freshness: time since the last usable frame. Never heard is the same as lost.

@@ -93,9 +93,28 @@ Bench::Bench() {
   for (const std::uint8_t node : {kArm, kPedestal, kPallet}) stations_.emplace_back(node);
 }
 
-bool Bench::lost() {
+std::uint32_t Bench::random() {
   random_ = random_ * 1664525U + 1013904223U;
-  return static_cast<int>((random_ >> 16) % 100U) < loss_percent;
+  return random_ >> 16;
+}
+
+bool Bench::lost() {
+  return static_cast<int>(random() % 100U) < loss_percent;
+}
+
+void Bench::reorder(std::vector<wire::Frame>& frames, std::uint8_t to) {
+  constexpr std::uint32_t kShare = 20;  // one in so many
+  constexpr std::uint32_t kMost_ms = 30;
+  std::erase_if(frames, [&](const wire::Frame& frame) {
+    if (random() % kShare != 0) return false;
+    late_.push_back({frame, to, now_ms + 1 + static_cast<int>(random() % kMost_ms)});
+    return true;
+  });
+  std::erase_if(late_, [&](const Late& late) {
+    if (late.to != to || late.due_ms > now_ms) return false;
+    frames.push_back(late.frame);
+    return true;
+  });
 }
 
 void Bench::beat(std::vector<wire::Frame>& frames) {
@@ -114,6 +133,8 @@ std::vector<wire::Frame> Bench::delivered(const std::vector<wire::Frame>& frames
     received.push_back(frame);
     if (duplicates && lost()) received.push_back(frame);
   }
+  if (reorders) reorder(received, to);
+  if (on_delivery) on_delivery(to, received);
   return received;
 }
 

@@ -88,6 +88,9 @@ class Bench {
   std::uint16_t epoch = 77;
   int loss_percent = 0;
   bool duplicates = false;
+  bool reorders = false;  ///< some frames come up to 30 ms late, after others
+  /// Called with what a station is about to hear, which it may change.
+  std::function<void(std::uint8_t to, std::vector<wire::Frame>& frames)> on_delivery;
   /// Called after each millisecond.
   std::function<void()> after_step;
   std::vector<wire::Frame> heard;  ///< what stations said in the last step
@@ -98,6 +101,15 @@ class Bench {
   bool lost();
   /// What of `frames` gets to `to`; its own do not come back.
   std::vector<wire::Frame> delivered(const std::vector<wire::Frame>& frames, std::uint8_t to);
+  struct Late {
+    wire::Frame frame;
+    std::uint8_t to = 0;
+    int due_ms = 0;
+  };
+  /// Takes out what comes later, adds what is due.
+  void reorder(std::vector<wire::Frame>& frames, std::uint8_t to);
+  std::uint32_t random();
+  std::vector<Late> late_;
   std::vector<Station> stations_;
   std::vector<wire::Frame> injected_;
   std::array<wire::SequenceIssuer, 16> sequence_{};

@@ -49,6 +49,17 @@ TEST(CounterCheck, starts_over_after_a_repeat_or_a_jump) {
   }
 }
 
+TEST(CounterCheck, is_in_order_again_with_the_third_frame_after_one_stray) {
+  for (std::uint8_t stray = 0; stray < kCounterModulus; ++stray) {
+    if (stray >= 7 && stray <= 9) continue;  // it would be next
+    CounterCheck check = after({4, 5, 6});
+    EXPECT_EQ(check.accept(stray), CounterVerdict::Discarded) << int{stray};
+    EXPECT_EQ(check.accept(7), CounterVerdict::Qualifying) << int{stray};
+    EXPECT_EQ(check.accept(8), CounterVerdict::Qualifying) << int{stray};
+    EXPECT_EQ(check.accept(9), CounterVerdict::Qualified) << int{stray};
+  }
+}
+
 TEST(Reception, never_heard_is_not_fresh) {
   EXPECT_FALSE(Reception{}.fresh());
 }
