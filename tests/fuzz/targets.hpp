@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
-/// What reads files that may come from anywhere. A target takes any bytes and must come to an answer: a
-/// value, or mistakes that a person can act on. Where it has neither, or a value that does not hold what its
-/// reader promises, it aborts with a sentence on stderr.
+/// What reads files that may come from anywhere, and what hears a bus. A target takes any bytes and must come
+/// to an answer: a value, or mistakes that a person can act on. Where it has neither, or a value that does
+/// not hold what its reader promises, it aborts with a sentence on stderr.
 namespace pinjaw::fuzz {
 
 struct Target {
@@ -18,7 +18,7 @@ struct Target {
   std::string dictionary;          ///< of the words that mean something to it, in tests/fuzz/
 };
 
-/// Every target, by name.
+/// Every target of this program, by name: those that read files, or those of protocol and firmware.
 const std::vector<Target>& targets();
 
 /// Files people write: kit, profile, task, materials, cell, sequence, controller.
@@ -27,6 +27,10 @@ std::vector<Target> yaml_targets();
 std::vector<Target> json_targets();
 /// Files of CAD systems.
 std::vector<Target> part_targets();
+/// Bytes of a bus or of a controller's memory.
+std::vector<Target> bus_targets();
+/// What a controller does about frames; bus_targets() has them, too.
+std::vector<Target> controller_targets();
 
 /// A folder of this process, like the checkout's configs/ but with room for one more file in it, which
 /// relative names of the shipped files find their way from. Gone at the end of the process.
