@@ -112,16 +112,20 @@ Occurrence in_relax(const State& state) {
   return state.timers.state.running() ? std::nullopt : Occurrence(Event::PeerWatched);
 }
 
-Occurrence in_opening(const State& state) {
+/// R6: the jaws are away from the part, and the decision that let them is stored.
+bool has_opened(const State& state) {
   const bool decided = (state.store.durable() || !keeps(Rule::DecisionBeforeOpen)) &&
                        state.store.record.custody == Custody::Decided;
-  if (decided && clear_of_part(state)) return Event::Opened;
+  return decided && clear_of_part(state);
+}
+
+Occurrence in_opening(const State& state) {
+  if (has_opened(state)) return Event::Opened;
   return state.timers.state.running() ? std::nullopt : Occurrence(Event::OpenTimeout);
 }
 
 Occurrence in_fault_empty(const State& state) {
-  const bool late = state.store.record.custody == Custody::Decided && clear_of_part(state);
-  return late ? Occurrence(Event::Opened) : std::nullopt;
+  return has_opened(state) ? Occurrence(Event::Opened) : std::nullopt;
 }
 
 Occurrence by_state(const State& state) {
