@@ -109,7 +109,9 @@ Occurrence in_offered(const State& state) {
 Occurrence in_relax(const State& state) {
   if (!peer_holds(state)) return Event::PeerDoubted;
   if (slipped(state)) return Event::Slip;
-  return state.timers.state.running() ? std::nullopt : Occurrence(Event::PeerWatched);
+  // The other channel counts frames in its own way and may want a few more.
+  const bool both = permits_release(state.release_guard, state.config, state.store.record);
+  return state.timers.state.running() || !both ? std::nullopt : Occurrence(Event::PeerWatched);
 }
 
 /// R6: the jaws are away from the part, and the decision that let them is stored.

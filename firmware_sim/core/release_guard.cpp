@@ -138,11 +138,16 @@ void watch(ReleaseGuard& guard, const Config& config, const Release& release,
   if (!guard.asked.running()) guard.hand_permits = false;
 }
 
+bool permits_release(const ReleaseGuard& guard, const Config& config, const NvmRecord& record) {
+  if (!config.release_guard_enabled) return true;
+  return guard.peer_permits && guard.peer == record.peer && guard.token == record.token;
+}
+
 bool permits_decision(const ReleaseGuard& guard, const Config& config, const NvmRecord& record) {
   if (!config.release_guard_enabled || record.custody != Custody::Decided || guard.decided_before)
     return true;
   if (record.peer == kByHand) return guard.hand_permits;
-  return guard.peer_permits && guard.peer == record.peer && guard.token == record.token;
+  return permits_release(guard, config, record);
 }
 
 bool permits_opening(const ReleaseGuard& guard, const Config& config, const NvmRecord& record, bool stored) {

@@ -51,6 +51,9 @@ ReleaseGuard guard_after_reset(const NvmRecord& record);
 void watch(ReleaseGuard& guard, const Config& config, const Release& release,
            std::span<const wire::Frame> received, bool local_enable, std::uint16_t elapsed_ms);
 
+/// The handoff of `record` may be decided: its peer was seen to hold.
+bool permits_release(const ReleaseGuard& guard, const Config& config, const NvmRecord& record);
+
 /// A record that says 'decided' may be stored, and the jaws may open on it.
 bool permits_decision(const ReleaseGuard& guard, const Config& config, const NvmRecord& record);
 
