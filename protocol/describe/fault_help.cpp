@@ -34,12 +34,15 @@ constexpr std::array kHelps = {
     FaultHelp{FaultCode::Watchdog, "the controller's program stopped and was started again",
               "a defect of hardware or firmware",
               "note what was going on; the custody record was restored: pinjaw jaw status"},
-    FaultHelp{FaultCode::MemorySelfTest, "the controller's memory failed its test", "a defective controller",
-              "support the part, replace the controller"},
+    FaultHelp{FaultCode::MemorySelfTest,
+              "the controller's memory failed its test, or its two channels differ on whether to let go",
+              "a defective controller; it holds", "support the part, replace the controller"},
     FaultHelp{
         FaultCode::CustodyMemory, "the record of who holds the part could not be stored or read",
         "worn or defective non-volatile memory",
-        "support the part; pinjaw jaw clear tries the store again; replace the controller if that fails"},
+        "support the part; pinjaw jaw clear tries the store again, and with the local enable on takes a part "
+        "without a record as this node's own; pinjaw jaw abort opens where the giver still has it; replace the "
+        "controller if neither helps"},
     FaultHelp{FaultCode::LayoutRefused, "a layout that was sent does not fit this controller",
               "its force is over the limit, its kit is another, or its numbers disagree",
               "plan again with this controller's kit file; pinjaw send tells which number it was"},
