@@ -12,6 +12,8 @@ namespace pinjaw::jaw_app {
 
 node::Figures figures_of(const model::Controller& controller) {
   const model::PlantFigures& plant = controller.plant;
+  std::optional<wire::Key> key;
+  if (controller.authentication) key = controller.authentication->key;
   return {.node = controller.node,
           .passive = controller.passive,
           .kit_id = wire::kit_id_of(std::span(controller.kit.sha256)),
@@ -19,6 +21,7 @@ node::Figures figures_of(const model::Controller& controller) {
           .force_uncertainty_n = controller.force_uncertainty_n,
           .separation_min_mm = controller.kit.jaws.separation_mm.lo,
           .separation_max_mm = controller.kit.jaws.separation_mm.hi,
+          .key = key,
           .plant = {.supply_bar = plant.supply_bar,
                     .supply_droop_bar = plant.supply_droop_bar,
                     .moving_mass_kg = plant.moving_mass_kg,

@@ -5,6 +5,7 @@
 #include "firmware_sim/core/custody.hpp"
 #include "firmware_sim/core/transitions.hpp"
 #include "protocol/wire/commands.hpp"
+#include "protocol/wire/result.hpp"
 
 namespace pinjaw::core {
 namespace {
@@ -31,24 +32,34 @@ std::optional<Answer> turned_away(Admission admission) {
   }
 }
 
-/// Sessions are handed out from blocks that were stored before, so that none comes twice after a power cut.
+wire::Acknowledge acknowledgement(const State& state, const wire::Command& command, const Answer& answer) {
+  return {.sequence = command.sequence,
+          .op = command.op,
+          .result = answer.result,
+          .session = state.gate.session(),
+          .reason = answer.reason,
+          .state = state.id,
+          .next_sequence = state.gate.next_sequence()};
+}
+
+/// Sessions are handed out from blocks that were stored before, so that none comes twice after a power cut:
+/// the next block is asked for while this one has a number left, as one may be skipped.
 void open_session(State& state) {
-  ++state.next_session;
-  if (state.next_session == 0) ++state.next_session;
-  const auto left = static_cast<std::uint16_t>(state.store.record.session_block - state.next_session);
-  if (left == 0 || left > kSessionBlock) {
+  state.next_session = next_session_number(state);
+  const std::uint32_t left = state.store.record.session_block - state.next_session;
+  if (left <= 1 || left > kSessionBlock) {
     NvmRecord record = state.store.record;
-    record.session_block = static_cast<std::uint16_t>(state.next_session + kSessionBlock);
+    record.session_block = state.next_session + kSessionBlock;
     save(state.store, record);
   }
-  state.gate.open(state.next_session);
+  state.gate.open(static_cast<std::uint16_t>(state.next_session & 0xFFFFU));
   state.session_epoch = state.host.epoch();
   state.frozen = false;
 }
 
 /// A number that nobody knows before it is said; 1..4095.
 std::uint16_t new_challenge(const State& state) {
-  const std::uint32_t mixed = (state.counters.steps ^ (std::uint32_t{state.next_session} << 7)) * 2654435761U;
+  const std::uint32_t mixed = (state.counters.steps ^ (state.next_session << 7)) * 2654435761U;
   return static_cast<std::uint16_t>(1U + (mixed >> 16) % 4095U);
 }
 
@@ -98,9 +109,13 @@ void take_up(State& state, const wire::Command& command) {
 
 }  // namespace
 
-wire::Acknowledge obey(State& state, const wire::Command& command) {
+wire::Acknowledge obey(State& state, const wire::Command& said) {
+  if (state.gate.admit(said) == Admission::Repeated) return state.gate.last_answer();
+  if (const auto answer = answer_question(state, said)) return *answer;
+  const wire::Result<wire::Command, Answer> proven = unsealed(state, said);
+  if (!proven) return acknowledgement(state, said, proven.error());
+  const wire::Command& command = *proven;
   const Admission admission = state.gate.admit(command);
-  if (admission == Admission::Repeated) return state.gate.last_answer();
   Answer answer;
   if (const std::optional<Answer> away = turned_away(admission)) {
     answer = *away;
@@ -112,19 +127,13 @@ wire::Acknowledge obey(State& state, const wire::Command& command) {
       apply(state, decision.event);
     }
   }
-  wire::Acknowledge acknowledge{.sequence = command.sequence,
-                                .op = command.op,
-                                .result = answer.result,
-                                .session = state.gate.session(),
-                                .reason = answer.reason,
-                                .state = state.id,
-                                .next_sequence = state.gate.next_sequence()};
+  wire::Acknowledge acknowledge = acknowledgement(state, command, answer);
   const bool opens = command.op == wire::Op::Arm && answer.result == CommandResult::Ok;
   if (admission != Admission::New || command.op == wire::Op::Hold) return acknowledge;
   if (command.op == wire::Op::Arm && !opens) return acknowledge;
   acknowledge.next_sequence =
       command.sequence == 255 ? command.sequence : static_cast<std::uint8_t>(command.sequence + 1);
-  state.gate.remember(command, acknowledge);
+  state.gate.remember(said, acknowledge);
   return acknowledge;
 }
 

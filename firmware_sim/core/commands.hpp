@@ -23,7 +23,7 @@ struct Decision {
 Decision decide(const State& state, const wire::Command& command);
 
 /// Judges and carries out a command, and gives its acknowledgement; a repeat of the last command gets the
-/// same one and does nothing.
-wire::Acknowledge obey(State& state, const wire::Command& command);
+/// same one and does nothing. With a key, a command without the right MAC goes no further than that.
+wire::Acknowledge obey(State& state, const wire::Command& said);
 
 }  // namespace pinjaw::core

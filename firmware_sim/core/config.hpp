@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "firmware_sim/core/state_table.hpp"
+#include "protocol/wire/aes.hpp"
 
 namespace pinjaw::core {
 
@@ -33,6 +35,8 @@ struct Config {
   std::int32_t pre_vent_mbar = 500;  ///< section 3: the open side's pressure before the jaws may close
 
   std::uint32_t serial = 0;
+
+  std::optional<wire::Key> key{};  ///< shared with hosts: commands must prove that they know it
 
   std::int32_t ramp_dn_per_ms = 5;  ///< section 3: at most 0.5 N/ms
   std::int32_t hold_band_dn = 10;   ///< chosen: half the dead band while holding, several times sensor noise

@@ -26,6 +26,7 @@ constexpr wire::Severity severity_of(wire::FaultCode code) {
     case BadChecksum:
     case BadSequence:
     case BadSession:
+    case Authentication:
     case InDoubt:
     case ManualRelease:
       return wire::Severity::Warning;

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 
+#include "firmware_sim/core/authentication.hpp"
 #include "firmware_sim/core/bus_link.hpp"
 #include "firmware_sim/core/config.hpp"
 #include "firmware_sim/core/faults.hpp"
@@ -106,6 +107,7 @@ struct Counters {
   std::uint32_t events_refused = 0;
   std::uint32_t frames_not_sent = 0;
   std::uint32_t steps = 0;
+  std::uint32_t wrong_macs = 0;
 };
 
 /// One request at a time, and its answer.
@@ -130,6 +132,7 @@ struct State {
   BusLink bus;
   HostLink host;
   wire::CommandGate gate;
+  LockOut lock_out;
   Peers peers;
   Receiving receiving;
   Faults faults;
@@ -139,7 +142,7 @@ struct State {
   Counters counters;
 
   std::uint16_t session_epoch = 0;  ///< of the host that opened the session
-  std::uint16_t next_session = 0;   ///< sessions given out so far
+  std::uint32_t next_session = 0;   ///< sessions given out so far; on the wire, their low half
   std::uint16_t permit_dn = 0;      ///< F_permit of the squeeze; 0: light only
   std::uint16_t force_set_dn = 0;   ///< F_set of the squeeze
   std::int32_t reference_10um = 0;  ///< separation from which slip counts

@@ -69,6 +69,7 @@ void let_time_pass(State& state, std::uint16_t elapsed_ms) {
   state.peers.advance(elapsed_ms);
   state.timers.state.advance(state.frozen ? std::uint16_t{0} : elapsed_ms);
   state.timers.challenge.advance(elapsed_ms);
+  advance_lock_out(state, elapsed_ms);
 }
 
 void react(State& state) {
@@ -128,7 +129,7 @@ void power_on(const Config& config, const NvmImage& image, State& state) {
   NvmRecord record = image.record.value_or(NvmRecord{});
   ++record.boot_count;
   state.next_session = record.session_block;
-  record.session_block = static_cast<std::uint16_t>(record.session_block + kSessionBlock);
+  if (numbers_are_left(state)) record.session_block += kSessionBlock;
   state.permit_dn = record.permit_dn;
   if (record.custody == Custody::Empty) {
     state.receiving = {.giver = record.peer, .token = record.token, .pair = record.pair};

@@ -5,6 +5,7 @@
 
 #include "firmware_sim/core/config.hpp"
 #include "firmware_sim/plant/parameters.hpp"
+#include "protocol/wire/aes.hpp"
 
 namespace pinjaw::node {
 
@@ -34,6 +35,7 @@ struct Figures {
   double force_uncertainty_n = 12;  ///< of force inferred from pressure
   double separation_min_mm = 0;
   double separation_max_mm = 60;
+  std::optional<wire::Key> key{};  ///< shared with hosts; nothing: whoever is on the bus may command
   PlantFigures plant{};
 };
 

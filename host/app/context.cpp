@@ -9,10 +9,12 @@
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <random>
 
 #include "host/app/interrupt.hpp"
 #include "host/app/progress.hpp"
 #include "host/base/files.hpp"
+#include "host/config/key_file.hpp"
 
 namespace pinjaw::app {
 
@@ -154,6 +156,25 @@ planner::ProgressSink Context::progress_sink() const {
   }
   if (!is_terminal(stderr)) return {};
   return [screen = std::make_shared<Screen>(can_redraw())](const planner::Progress& at) { screen->show(at); };
+}
+
+std::optional<jaw_client::Client::Settings> Context::host_settings(
+    const std::optional<model::Authentication>& fallback) {
+  constexpr unsigned kEpochs = 0xFFFF;
+  std::random_device random;
+  jaw_client::Client::Settings settings{
+      .epoch = static_cast<std::uint16_t>(random() % kEpochs + 1),
+      .nonces = std::uint64_t{random()} << 32 | random(),
+  };
+  if (fallback) settings.key = fallback->key;
+  if (key_file.empty()) return settings;
+  const auto key = config::read_key_file(key_file);
+  if (!key) {
+    fail(ExitCode::BadFile, key.error().message);
+    return std::nullopt;
+  }
+  settings.key = *key;
+  return settings;
 }
 
 }  // namespace pinjaw::app

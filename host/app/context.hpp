@@ -9,6 +9,8 @@
 #include "host/app/exit_code.hpp"
 #include "host/base/diagnostics.hpp"
 #include "host/base/expected.hpp"
+#include "host/jaw_client/client.hpp"
+#include "host/model/authentication.hpp"
 #include "host/planner/plan/plan.hpp"
 
 namespace CLI {
@@ -25,6 +27,7 @@ class Context {
  public:
   std::string bus = "sim:";
   std::string world;
+  std::string key_file;
   bool json = false;
   bool quiet = false;
   ProgressMode progress = ProgressMode::Auto;
@@ -51,6 +54,11 @@ class Context {
 
   /// Tells in time, before long work, that `path` cannot be written, or is `input` itself; exit code 3 or 2.
   bool can_write(const std::filesystem::path& path, const std::filesystem::path& input = {});
+
+  /// How this program speaks to controllers: with an epoch and nonces drawn anew, and the key of --key-file,
+  /// else `fallback`. Nothing, with exit code 3, where the key file is none.
+  std::optional<jaw_client::Client::Settings> host_settings(
+      const std::optional<model::Authentication>& fallback = {});
 
   /// Hands on what is left of the result; exit code 3 where stdout did not take it all.
   void finish();

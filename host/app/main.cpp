@@ -33,6 +33,11 @@ void add_globals(CLI::App& app, Context& context) {
       ->type_name("BUS")
       ->capture_default_str();
   app.add_option("--world", context.world, "Unix socket of a pinjaw-jaw's world")->type_name("PATH");
+  app.add_option("--key-file", context.key_file,
+                 "the key that the controllers of the cell ask for: 32 hexadecimal digits")
+      ->envname("PINJAW_KEY_FILE")
+      ->type_name("FILE")
+      ->check(pinjaw::app::file_name());
   app.add_flag("--json", context.json, "the result on stdout as JSON");
   app.add_flag("--quiet", context.quiet, "no remarks and no progress on stderr");
   pinjaw::app::add_choice<ProgressMode>(

@@ -13,11 +13,12 @@ namespace {
 
 constexpr std::int64_t kTick_us = 1000;
 
-node::Figures figures_of(const model::Station& station) {
+node::Figures figures_of(const model::Station& station, const std::optional<wire::Key>& key) {
   const model::Kit& kit = station.task.kit;
   node::Figures figures;
   figures.node = station.node;
   figures.passive = !station.grips;
+  figures.key = key;
   figures.kit_id = wire::kit_id_of(std::span(kit.sha256));
   figures.max_squeeze_n = kit.actuator.max_squeeze_n;
   figures.force_uncertainty_n = kit.actuator.force_uncertainty_n;
@@ -28,11 +29,11 @@ node::Figures figures_of(const model::Station& station) {
 
 class SimVenue final : public Venue {
  public:
-  SimVenue(const model::Cell& cell, std::uint64_t seed)
+  SimVenue(const model::Cell& cell, std::uint64_t seed, const std::optional<wire::Key>& key)
       : wire_({.seed = seed}),
         host_end_(wire_.open()),
         ends_(open_ends(cell)),
-        world_(members(cell), seed),
+        world_(members(cell, key), seed),
         port_([this](const bench::Request& request) { return world_.handle(request); }) {
     wire_.on_frame([this](const bus::Received& received) {
       log_ += bus::to_log_line({received.time_us, "sim0", received.frame}) + "\n";
@@ -66,10 +67,11 @@ class SimVenue final : public Venue {
     for (std::size_t i = 0; i < cell.stations.size(); ++i) ends.push_back(wire_.open());
     return ends;
   }
-  [[nodiscard]] std::vector<world::Member> members(const model::Cell& cell) const {
+  [[nodiscard]] std::vector<world::Member> members(const model::Cell& cell,
+                                                   const std::optional<wire::Key>& key) const {
     std::vector<world::Member> members;
     for (std::size_t i = 0; i < cell.stations.size(); ++i) {
-      members.push_back({figures_of(cell.stations[i]), ends_[i].get()});
+      members.push_back({figures_of(cell.stations[i], key), ends_[i].get()});
     }
     return members;
   }
@@ -85,8 +87,10 @@ class SimVenue final : public Venue {
 
 }  // namespace
 
-std::unique_ptr<Venue> open_sim_venue(const model::Cell& cell, std::uint64_t seed) {
-  return std::make_unique<SimVenue>(cell, seed);
+std::unique_ptr<Venue> open_sim_venue(const model::Cell& cell, std::uint64_t seed,
+                                      const std::optional<wire::Key>& key) {
+  const auto of_cell = cell.authentication ? std::optional<wire::Key>(cell.authentication->key) : key;
+  return std::make_unique<SimVenue>(cell, seed, of_cell);
 }
 
 }  // namespace pinjaw::app

@@ -2,18 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <random>
-
 namespace pinjaw::app {
-
-namespace {
-
-std::uint16_t fresh_epoch() {
-  constexpr unsigned kEpochs = 0xFFFF;
-  return static_cast<std::uint16_t>(std::random_device{}() % kEpochs + 1);
-}
-
-}  // namespace
 
 std::unique_ptr<Talk> Talk::open(Context& context) {
   const auto interface = can_interface(context.bus);
@@ -25,18 +14,18 @@ std::unique_ptr<Talk> Talk::open(Context& context) {
             context.bus));
     return nullptr;
   }
+  const auto host = context.host_settings();
+  if (!host) return nullptr;
   auto venue = open_can_venue(*interface, "");
   if (!venue) {
     context.fail(ExitCode::Unavailable, venue.error().message);
     return nullptr;
   }
-  return std::unique_ptr<Talk>(new Talk(context, std::move(*venue)));
+  return std::unique_ptr<Talk>(new Talk(context, std::move(*venue), *host));
 }
 
-Talk::Talk(Context& context, std::unique_ptr<Venue> venue)
-    : context_(context),
-      venue_(std::move(venue)),
-      client_(venue_->bus(), {.epoch = fresh_epoch(), .speaks = true}) {}
+Talk::Talk(Context& context, std::unique_ptr<Venue> venue, jaw_client::Client::Settings host)
+    : context_(context), venue_(std::move(venue)), client_(venue_->bus(), host) {}
 
 void Talk::tick() {
   now_us_ = venue_->tick_us();

@@ -32,7 +32,7 @@ class Talk {
   bool wait_for(double seconds, const std::string& otherwise, const std::function<bool()>& condition);
 
  private:
-  Talk(Context& context, std::unique_ptr<Venue> venue);
+  Talk(Context& context, std::unique_ptr<Venue> venue, jaw_client::Client::Settings host);
   void tick();
 
   Context& context_;

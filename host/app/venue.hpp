@@ -11,6 +11,7 @@
 #include "host/model/cell.hpp"
 #include "protocol/bench/bench.hpp"
 #include "protocol/bus/bus.hpp"
+#include "protocol/wire/aes.hpp"
 
 namespace pinjaw::app {
 
@@ -36,8 +37,10 @@ class Venue {
   [[nodiscard]] virtual const std::string& log() const = 0;
 };
 
-/// An in-process bus in virtual time with a simulated controller for each station of `cell`.
-std::unique_ptr<Venue> open_sim_venue(const model::Cell& cell, std::uint64_t seed);
+/// An in-process bus in virtual time with a simulated controller for each station of `cell`. They ask for the
+/// cell's key, else for `key`.
+std::unique_ptr<Venue> open_sim_venue(const model::Cell& cell, std::uint64_t seed,
+                                      const std::optional<wire::Key>& key);
 
 /// A CAN interface of this machine, and the world served at `world_path` (none where it is empty). Fails with
 /// a sentence that tells the way out.

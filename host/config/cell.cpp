@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "host/config/fields.hpp"
+#include "host/config/key_file.hpp"
 #include "host/config/part_source.hpp"
 #include "host/config/read.hpp"
 
@@ -118,6 +119,7 @@ Read<model::Cell> read_cell(const std::filesystem::path& path) {
     const auto items = handoffs->list("a list of handoffs [[GIVER, RECEIVER], ...]", {0, 91});
     for (const YamlValue& item : items.value_or(std::vector<YamlValue>{})) read_handoff(item, cell);
   }
+  if (const auto key = top.find("authentication")) cell.authentication = read_authentication(*key);
   top.finish();
   return checked(file, nested, std::move(cell));
 }

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "host/config/fields.hpp"
+#include "host/config/key_file.hpp"
 #include "host/config/read.hpp"
 
 namespace pinjaw::config {
@@ -69,6 +70,7 @@ Read<model::Controller> read_controller(const std::filesystem::path& path) {
     read_hardware(hardware->map("settings {max_squeeze_n: ...}"), controller);
   if (const auto plant = top.find("plant"))
     controller.plant = read_plant(plant->map("settings {key: value}"));
+  if (const auto key = top.find("authentication")) controller.authentication = read_authentication(*key);
   top.finish();
   return checked(file, nested, std::move(controller));
 }

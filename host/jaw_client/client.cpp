@@ -46,7 +46,12 @@ struct Cycle {
 
 class Client::Implementation {
  public:
-  Implementation(bus::Bus& bus, Settings settings) : bus_(bus), settings_(settings) {}
+  Implementation(bus::Bus& bus, Settings settings) : bus_(bus), settings_(settings) {
+    if (!settings.key) return;
+    for (std::uint8_t node = wire::kFirstNode; node <= wire::kLastNode; ++node) {
+      jaw(node).channel.share(node, {*settings.key, settings.nonces});
+    }
+  }
 
   void step(std::int64_t now_us) {
     const std::uint16_t elapsed_ms = elapsed(now_us);

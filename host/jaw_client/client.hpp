@@ -7,6 +7,7 @@
 #include "host/jaw_client/node_view.hpp"
 #include "host/jaw_client/outcome.hpp"
 #include "protocol/bus/bus.hpp"
+#include "protocol/wire/aes.hpp"
 #include "protocol/wire/commands.hpp"
 #include "protocol/wire/layout.hpp"
 
@@ -21,8 +22,10 @@ namespace pinjaw::jaw_client {
 class Client {
  public:
   struct Settings {
-    std::uint16_t epoch = 1;  ///< drawn anew by each start of a host
-    bool speaks = true;       ///< false: watches only, and sends nothing
+    std::uint16_t epoch = 1;         ///< drawn anew by each start of a host
+    bool speaks = true;              ///< false: watches only, and sends nothing
+    std::optional<wire::Key> key{};  ///< shared with the controllers: every one of them must know it
+    std::uint64_t nonces = 1;        ///< with a key: drawn anew by each start of a host
   };
 
   Client(bus::Bus& bus, Settings settings);

@@ -24,6 +24,7 @@ void Operation::begin(std::uint8_t node, const Order& order) {
   order_ = order;
   outcome_ = {};
   challenged_ = false;
+  asked_again_ = false;
   phase_ = Phase::Start;
 }
 
@@ -102,12 +103,18 @@ void Operation::await_answer(const Surroundings& around) {
     case ChannelState::NoSession:
       outcome_.reason = wire::Reason::NotArmed;
       return fail(OutcomeKind::Refused, node_name(node_) + " is not armed");
+    case ChannelState::NoKey:
+      outcome_.reason = wire::Reason::Authentication;
+      return fail(OutcomeKind::Refused, node_name(node_) + " has no key, and this host insists on one");
+    case ChannelState::OtherKey:
+      outcome_.reason = wire::Reason::Authentication;
+      return fail(OutcomeKind::Refused, node_name(node_) + " has another key than this host");
     case ChannelState::Answered:
       return answered(around);
   }
 }
 
-bool Operation::worth_another_try(const wire::Acknowledge& answer, std::int64_t now_us) const {
+bool Operation::worth_another_try(const wire::Acknowledge& answer, std::int64_t now_us) {
   if (now_us - begun_us_ >= kPrepare_us) return false;
   if (answer.result == wire::CommandResult::Ok) {
     return order_.leaves_loaded && answer.state == wire::State::Loaded;
@@ -122,6 +129,8 @@ bool Operation::worth_another_try(const wire::Acknowledge& answer, std::int64_t 
     case wire::Reason::HostSilent:
     case wire::Reason::WrongSession:  // the node still follows the last host
       return order_.command.op == wire::Op::Arm;
+    case wire::Reason::Authentication:  // another session began since we asked for the number
+      return order_.command.op == wire::Op::Arm && knows_key_ && !std::exchange(asked_again_, true);
     default:
       return false;
   }
@@ -129,6 +138,7 @@ bool Operation::worth_another_try(const wire::Acknowledge& answer, std::int64_t 
 
 void Operation::answered(const Surroundings& around) {
   const wire::Acknowledge answer = around.channel.answer();
+  knows_key_ = around.channel.has_secret();
   if (worth_another_try(answer, around.now_us)) return enter(Phase::Pause, around.now_us);
   if (answer.result != wire::CommandResult::Ok) return refused(answer);
   if (order_.asks_challenge && !challenged_) return enter(Phase::Challenge, around.now_us);
@@ -146,6 +156,10 @@ void Operation::answered(const Surroundings& around) {
 void Operation::refused(const wire::Acknowledge& answer) {
   outcome_.result = answer.result;
   outcome_.reason = answer.reason;
+  if (answer.reason == wire::Reason::Authentication && !knows_key_) {
+    return fail(OutcomeKind::Refused,
+                node_name(node_) + " requires authentication: give this host the cell's key");
+  }
   const bool force = answer.result == wire::CommandResult::Limit || is_force_reason(answer.reason);
   fail(force ? OutcomeKind::ForceRefused : OutcomeKind::Refused,
        node_name(node_) + " refused " + wire::to_string(answer.op) + " in " + wire::to_string(answer.state) +

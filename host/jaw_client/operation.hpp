@@ -73,7 +73,7 @@ class Operation {
   void refused(const wire::Acknowledge& answer);
   void await_challenge(const Surroundings& around);
   void reach(const Surroundings& around);
-  [[nodiscard]] bool worth_another_try(const wire::Acknowledge& answer, std::int64_t now_us) const;
+  [[nodiscard]] bool worth_another_try(const wire::Acknowledge& answer, std::int64_t now_us);
 
   std::uint8_t node_ = 0;
   Order order_;
@@ -85,6 +85,8 @@ class Operation {
   wire::State state_before_ = wire::State::Boot;
   bool left_ = false;  ///< the state from before the answer has been left
   bool challenged_ = false;
+  bool knows_key_ = false;    ///< we share one with the controllers
+  bool asked_again_ = false;  ///< for the number of a session, after a wrong MAC
   Outcome outcome_{.kind = OutcomeKind::Done, .sentence = {}};
 };
 

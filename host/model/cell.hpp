@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "host/model/authentication.hpp"
 #include "host/model/task.hpp"
 
 namespace pinjaw::model {
@@ -35,6 +36,7 @@ struct Cell {
   PartSource part;
   std::vector<Station> stations;
   std::vector<Handoff> handoffs;
+  std::optional<Authentication> authentication;  ///< nothing: whoever is on the bus may command
 };
 
 }  // namespace pinjaw::model

@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "host/model/authentication.hpp"
 #include "host/model/kit.hpp"
 
 namespace pinjaw::model {
@@ -33,6 +34,7 @@ struct Controller {
   double max_squeeze_n = 0;
   double force_uncertainty_n = 0;
   PlantFigures plant;
+  std::optional<Authentication> authentication;  ///< nothing: whoever is on the bus may command
 };
 
 }  // namespace pinjaw::model

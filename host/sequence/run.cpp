@@ -7,12 +7,12 @@
 namespace pinjaw::sequence {
 
 Run::Run(const model::Sequence& sequence, const Crew& crew, std::vector<StepScript> scripts, Venue venue,
-         std::uint16_t epoch)
+         jaw_client::Client::Settings host)
     : sequence_(sequence),
       scripts_(std::move(scripts)),
       venue_(std::move(venue)),
       injected_(sequence.faults.size()),
-      client_(*venue_.bus, {.epoch = epoch, .speaks = true}),
+      client_(*venue_.bus, host),
       stage_{client_, venue_.world} {
   report_.sequence = sequence.name;
   for (const Member& member : crew.members()) nodes_.push_back(member.node());

@@ -31,7 +31,7 @@ class Run {
   static constexpr double kAftermathS = 5;
 
   Run(const model::Sequence& sequence, const Crew& crew, std::vector<StepScript> scripts, Venue venue,
-      std::uint16_t epoch);
+      jaw_client::Client::Settings host);
 
   void step(std::int64_t now_us);
   [[nodiscard]] bool over() const { return over_; }

@@ -92,6 +92,11 @@ constexpr std::array kHelps = {
               "take the replay or the gateway off; such frames are never acted on"},
     FaultHelp{FaultCode::BadSession, "commands came for a session that is over",
               "the host kept on after a reset or another host's ARM", "arm again"},
+    FaultHelp{
+        FaultCode::Authentication,
+        "commands came with a wrong MAC; after three of them only HOLD is obeyed for a minute",
+        "a host with another key or none, a replayed log, or somebody who tries to command the node",
+        "give the host the cell's key (--key-file); if no host of yours did it, look who is on the bus"},
     FaultHelp{FaultCode::InDoubt, "the giver did not answer whether it let go, so both go on holding",
               "the giver's controller or its bus fell silent at that moment",
               "restore the giver; the handoff then settles by itself; never open by hand before it has"},

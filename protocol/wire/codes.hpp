@@ -104,9 +104,11 @@ enum class Reason : std::uint8_t {
   HandoffRunning,
   CauseRemains,  ///< the fault's cause is still there
   Degraded,
-  Passive,  ///< a passive station does not squeeze
+  Passive,         ///< a passive station does not squeeze
+  Authentication,  ///< the command's MAC is not right, or asks for what makes it right
+  LockedOut,       ///< too many commands with a wrong MAC: for a while only HOLD is obeyed
 };
-inline constexpr std::size_t kReasonCount = 30;
+inline constexpr std::size_t kReasonCount = 32;
 
 enum class Severity : std::uint8_t { Info, Warning, Hold, Latched };
 
@@ -145,27 +147,29 @@ enum class FaultCode : std::uint16_t {
   BadChecksum = 0x8160,
   BadSequence = 0x8161,
   BadSession = 0x8162,
+  Authentication = 0x8163,
   InDoubt = 0x8170,
   HandoffAborted = 0x8171,
   ManualRelease = 0x9001,
 };
 
 /// All fault codes; a code's place is its index on the wire (STATE.FAULT), 0 being none.
-inline constexpr std::array kFaultCodes = {FaultCode::None,           FaultCode::SupplyVoltage,
-                                           FaultCode::PressureRange,  FaultCode::SensorsDisagree,
-                                           FaultCode::ValveStuck,     FaultCode::Position,
-                                           FaultCode::Watchdog,       FaultCode::MemorySelfTest,
-                                           FaultCode::CustodyMemory,  FaultCode::LayoutRefused,
-                                           FaultCode::SupplyAirLow,   FaultCode::Leak,
-                                           FaultCode::OverForce,      FaultCode::HoldLost,
-                                           FaultCode::Slip,           FaultCode::NoPart,
-                                           FaultCode::MisSeated,      FaultCode::ReceiveOverrun,
-                                           FaultCode::BusPassive,     FaultCode::HostLost,
-                                           FaultCode::PeerLost,       FaultCode::BusOffRecovered,
-                                           FaultCode::BusOff,         FaultCode::OwnIdSeen,
-                                           FaultCode::BadChecksum,    FaultCode::BadSequence,
-                                           FaultCode::BadSession,     FaultCode::InDoubt,
-                                           FaultCode::HandoffAborted, FaultCode::ManualRelease};
+inline constexpr std::array kFaultCodes = {FaultCode::None,          FaultCode::SupplyVoltage,
+                                           FaultCode::PressureRange, FaultCode::SensorsDisagree,
+                                           FaultCode::ValveStuck,    FaultCode::Position,
+                                           FaultCode::Watchdog,      FaultCode::MemorySelfTest,
+                                           FaultCode::CustodyMemory, FaultCode::LayoutRefused,
+                                           FaultCode::SupplyAirLow,  FaultCode::Leak,
+                                           FaultCode::OverForce,     FaultCode::HoldLost,
+                                           FaultCode::Slip,          FaultCode::NoPart,
+                                           FaultCode::MisSeated,     FaultCode::ReceiveOverrun,
+                                           FaultCode::BusPassive,    FaultCode::HostLost,
+                                           FaultCode::PeerLost,      FaultCode::BusOffRecovered,
+                                           FaultCode::BusOff,        FaultCode::OwnIdSeen,
+                                           FaultCode::BadChecksum,   FaultCode::BadSequence,
+                                           FaultCode::BadSession,    FaultCode::Authentication,
+                                           FaultCode::InDoubt,       FaultCode::HandoffAborted,
+                                           FaultCode::ManualRelease};
 
 constexpr std::uint8_t index_of(FaultCode code) {
   for (std::size_t i = 0; i < kFaultCodes.size(); ++i) {

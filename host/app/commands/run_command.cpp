@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <random>
 
 #include "host/app/choices.hpp"
 #include "host/app/commands/commands.hpp"
@@ -119,9 +118,10 @@ bool drops_frames(const model::Sequence& sequence) {
                              [](const model::ScriptedFault& fault) { return fault.drop_share > 0; });
 }
 
-std::unique_ptr<Venue> open_venue(Context& context, const model::Sequence& sequence) {
+std::unique_ptr<Venue> open_venue(Context& context, const model::Sequence& sequence,
+                                  const std::optional<wire::Key>& key) {
   if (context.bus == "sim:") {
-    if (context.world.empty()) return open_sim_venue(sequence.cell, context.seed);
+    if (context.world.empty()) return open_sim_venue(sequence.cell, context.seed, key);
     context.fail(ExitCode::Usage, "--world goes with --bus can:IFACE; sim: has a world of its own");
     return nullptr;
   }
@@ -202,15 +202,19 @@ void run_sequence(Context& context, const RunOptions& options) {
   auto prepared = prepare(context, options);
   if (!prepared) return;
   if (options.dry) return print_script(context, *prepared);
-  const std::unique_ptr<Venue> venue = open_venue(context, prepared->sequence);
+  auto host = context.host_settings(prepared->sequence.cell.authentication);
+  if (!host) return;
+  const std::unique_ptr<Venue> venue = open_venue(context, prepared->sequence, host->key);
   if (!venue) return;
 
   // on a simulated bus the seed settles everything; on a real one each start is a host of its own
-  const auto epoch = context.bus == "sim:" ? static_cast<std::uint16_t>(context.seed % 0xFFFF + 1)
-                                           : static_cast<std::uint16_t>(std::random_device{}() % 0xFFFF + 1);
+  if (context.bus == "sim:") {
+    host->epoch = static_cast<std::uint16_t>(context.seed % 0xFFFF + 1);
+    host->nonces = context.seed;
+  }
   const auto lose = [&venue](double share, double seconds) { venue->lose_frames(share, seconds); };
   sequence::Run run(prepared->sequence, prepared->crew, std::move(prepared->scripts),
-                    {&venue->bus(), venue->world(), lose}, epoch);
+                    {&venue->bus(), venue->world(), lose}, *host);
   std::int64_t now_us = 0;
   while (!run.over() && static_cast<double>(now_us) < kLongestRunS * 1e6) {
     now_us = venue->tick_us();

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "firmware_sim/core/authentication.hpp"
+#include "protocol/wire/seal.hpp"
+
 namespace pinjaw::core::test {
 namespace {
 
@@ -166,6 +169,23 @@ bool Bench::reaches(std::uint8_t node, StateId state, int most_ms) {
   return run_until(most_ms, [&] { return at(node).id() == state; });
 }
 
+void Bench::share_key(const wire::Key& key) {
+  key_ = key;
+  for (Station& station : stations_) {
+    station.config.key = key;
+    station.power_on_again();
+  }
+}
+
+wire::Command Bench::sealed_for(std::uint8_t node, const wire::Command& command) {
+  if (!key_ || command.op == wire::Op::Hold) return command;
+  const State& core = at(node).core;
+  const bool arms = command.op == wire::Op::Arm;
+  return wire::sealed(*key_, node, command,
+                      {.number = arms ? next_session_number(core) : core.next_session,
+                       .epoch = arms ? epoch : core.session_epoch});
+}
+
 std::optional<wire::Acknowledge> Bench::command(std::uint8_t node, wire::Command command) {
   if (command.op != wire::Op::Hold && command.op != wire::Op::Arm) {
     const auto sequence = sequence_[node].take();
@@ -173,6 +193,7 @@ std::optional<wire::Acknowledge> Bench::command(std::uint8_t node, wire::Command
     command.sequence = *sequence;
     command.session = session_[node];
   }
+  command = sealed_for(node, command);
   for (int attempt = 0; attempt < 20; ++attempt) {
     inject(wire::pack(command, {.node = node}));
     for (int ms = 0; ms < wire::kAcknowledge_ms; ++ms) {

@@ -66,6 +66,8 @@ class Bench {
 
   /// Sends a command, repeating it like a host, until it is answered; nothing where it never is.
   std::optional<wire::Acknowledge> command(std::uint8_t node, wire::Command command);
+  /// `command` with the MAC that `node` asks for now, where the stations have a key.
+  wire::Command sealed_for(std::uint8_t node, const wire::Command& command);
   /// ARM with the station's layout.
   std::optional<wire::Acknowledge> arm_session(std::uint8_t node);
   wire::CommandResult result_of(std::uint8_t node, const wire::Command& wanted);
@@ -73,6 +75,9 @@ class Bench {
   /// Commits its layout at a station as if it had been stored before, and restarts it.
   void load(std::uint8_t node, const wire::Layout& layout);
   void load_all();
+
+  /// All stations are given `key` and started again; commands are sealed with it from now on.
+  void share_key(const wire::Key& key);
 
   /// The part lies on the pallet and the pallet answers for it: HOLD.
   void load_pallet();
@@ -114,6 +119,7 @@ class Bench {
   std::vector<wire::Frame> injected_;
   std::array<wire::SequenceIssuer, 16> sequence_{};
   std::array<std::uint16_t, 16> session_{};
+  std::optional<wire::Key> key_;
   std::uint8_t beat_counter_ = 0;
   std::uint8_t arm_sequence_ = 0;
   std::uint32_t random_ = 12345;

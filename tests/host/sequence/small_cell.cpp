@@ -114,7 +114,7 @@ Played play(const model::Sequence& sequence, const Conditions& conditions) {
   if (!scripts) throw std::runtime_error(scripts.error().message);
   Controllers controllers(sequence.cell, conditions);
   const auto epoch = static_cast<std::uint16_t>(conditions.seed);
-  Run run(sequence, *crew, std::move(*scripts), controllers.venue(), epoch);
+  Run run(sequence, *crew, std::move(*scripts), controllers.venue(), {.epoch = epoch});
   constexpr std::int64_t kLongest_us = 300'000'000;
   for (std::int64_t now_us = 1000; !run.over(); now_us += 1000) {
     if (now_us > kLongest_us) throw std::runtime_error("the run does not end");

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace pinjaw::model {
+
+/// What hosts and controllers of a cell share so that nobody else can command (docs/authentication.md).
+struct Authentication {
+  std::array<std::uint8_t, 16> key{};  ///< never to be printed
+};
+
+}  // namespace pinjaw::model
