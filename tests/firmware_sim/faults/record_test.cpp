@@ -29,7 +29,7 @@ NvmRecord some_record(RecordEngine& engine) {
                    .handoff_number = any_u16(engine),
                    .force_set_dn = any_u16(engine),
                    .permit_dn = any_u16(engine),
-                   .session_block = any_u16(engine),
+                   .session_block = static_cast<std::uint32_t>(engine()),
                    .boot_count = any_u16(engine),
                    .seen_givers = any_u16(engine)};
   for (auto& token : record.last_token) token = any_u16(engine);

@@ -21,6 +21,7 @@ node::Figures figures_of(const TestGrip& grip) {
   figures.node = grip.node;
   figures.passive = grip.passive;
   figures.kit_id = kKitId;
+  figures.key = grip.key;
   figures.force_uncertainty_n = grip.passive ? 0 : kUncertainty_n;
   figures.max_squeeze_n = grip.passive ? 0 : 140;
   return figures;

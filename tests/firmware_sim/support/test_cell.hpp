@@ -19,6 +19,7 @@ struct TestGrip {
   double separation_mm = 30;
   double needed_n = 40;
   double limit_n = 140;
+  std::optional<wire::Key> key{};  ///< the controller asks for; the scripted host knows none
 };
 
 /// A passive station 3 and two grippers 1 and 2, all of them peers of each other.
