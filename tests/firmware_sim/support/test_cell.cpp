@@ -99,6 +99,7 @@ TestCell::TestCell(std::vector<TestGrip> grips, std::uint64_t seed) : grips_(std
 
 void TestCell::advance() {
   ++now_ms_;
+  if (const auto planned = planned_.find(now_ms_); planned != planned_.end()) planned->second();
   bus_.advance_to(std::int64_t{1000} * now_ms_);
   const bool killed = kill_at_ms_ && now_ms_ >= *kill_at_ms_;
   if (!killed) host_->step();

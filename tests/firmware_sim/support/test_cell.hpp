@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -47,6 +48,8 @@ class TestCell {
   bool run_until(const std::function<bool()>& condition, int at_most_ms);
   /// From now_ms() == `at_ms` on the host says nothing and scripts end with HostKilled.
   void kill_host_at(int at_ms) { kill_at_ms_ = at_ms; }
+  /// When now_ms() == `at_ms`, does `act`, whatever a script waits for.
+  void at(int at_ms, std::function<void()> act) { planned_[at_ms] = std::move(act); }
 
   /// Boots, transfers and commits every layout; false where one is refused.
   bool commission();
@@ -86,6 +89,7 @@ class TestCell {
   std::unique_ptr<ScriptedHost> host_;
   bench::Truth last_truth_;
   std::optional<int> kill_at_ms_;
+  std::map<int, std::function<void()>> planned_;
   int now_ms_ = 0;
   std::string frame_log_;
   std::string event_log_;
