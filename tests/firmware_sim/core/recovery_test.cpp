@@ -139,5 +139,67 @@ TEST_F(Recovery, of_memory_that_fails_tells_nobody_a_fact_that_is_not_stored) {
   EXPECT_TRUE(holds(bench.arm().id()));
 }
 
+struct Found {
+  const char* what;
+  Custody custody;
+  StateId state;
+  wire::Fact fact;  ///< said once the hold is good
+};
+
+/// Every record there is, found at power on by a gripper and by a passive station with the part in it.
+TEST_F(Recovery, follows_from_every_record_alone) {
+  constexpr Found kFound[] = {
+      {"nothing recorded, part felt", Custody::Empty, StateId::FaultHold, wire::Fact::Empty},
+      {"sole", Custody::Sole, StateId::Hold, wire::Fact::Sole},
+      {"offered", Custody::Offered, StateId::Hold, wire::Fact::Retain},
+      {"latched", Custody::Latched, StateId::Taken, wire::Fact::Take},
+      {"retained", Custody::Retained, StateId::Hold, wire::Fact::Retain},
+      {"released, part felt", Custody::Released, StateId::FaultHold, wire::Fact::Released},
+  };
+  for (const std::uint8_t node : {kArm, kPallet}) {
+    for (const Found& found : kFound) {
+      Bench fresh;
+      fresh.load_all();
+      if (node == kPallet) {
+        fresh.load_pallet();
+      } else {
+        fresh.load_gripper(node);
+      }
+      fresh.run(50);
+      fresh.at(node).power_off();
+      NvmRecord record = *fresh.at(node).memory.record;
+      record.custody = found.custody;
+      record.peer = kPedestal;
+      record.token = 9;
+      record.pair = layout_for(node).peer(kPedestal)->pair_crc;
+      fresh.at(node).memory.record = record;
+      fresh.at(node).power_on_again();
+      fresh.run(1500);
+      EXPECT_EQ(fresh.at(node).id(), found.state) << found.what << " at node " << int{node};
+      EXPECT_EQ(fresh.at(node).core.announced.fact, found.fact) << found.what << " at node " << int{node};
+      EXPECT_NE(fresh.at(node).outputs.valves.spool, Spool::Open) << found.what;
+      EXPECT_GE(fresh.at(node).jaw.squeeze_dn(), node == kArm ? 400 : 0) << found.what;
+    }
+  }
+}
+
+TEST_F(Recovery, of_a_receiver_in_doubt_goes_on_saying_take_and_reports_the_doubt) {
+  until_taken();
+  bench.arm().power_off();
+  bench.run(1900);
+  EXPECT_FALSE(bench.pedestal().core.faults.active(wire::FaultCode::InDoubt));
+  bench.run(200);
+  EXPECT_TRUE(bench.pedestal().core.faults.active(wire::FaultCode::InDoubt));
+  bench.run(60'000);
+  EXPECT_EQ(bench.pedestal().id(), StateId::Taken);
+  EXPECT_EQ(bench.pedestal().core.announced.fact, wire::Fact::Take);
+  bench.arm().power_on_again();
+  EXPECT_TRUE(bench.run_until(5000, [&] {
+    const StateId id = bench.pedestal().id();
+    return id == StateId::Hold || id == StateId::Seated;
+  })) << "the giver's word settles it";
+  EXPECT_FALSE(bench.pedestal().core.faults.active(wire::FaultCode::InDoubt));
+}
+
 }  // namespace
 }  // namespace pinjaw::core::test
