@@ -69,7 +69,7 @@ Answer check_accept(const State& state, const wire::Command& command) {
   const wire::Custody& offer = peer->custody;
   if (offer.fact != wire::Fact::Offer || offer.peer != state.config.node)
     return refused(Reason::PeerNotOffering);
-  if (offer.pair != named->pair_crc) return refused(Reason::PairDiffers);
+  if (offer.pair != named->pair_crc && keeps(Rule::ComparePair)) return refused(Reason::PairDiffers);
   return token_is_new(state.store.record, giver, offer.token) ? kOk : refused(Reason::TokenOld);
 }
 

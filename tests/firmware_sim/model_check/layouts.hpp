@@ -25,8 +25,9 @@ inline constexpr std::uint16_t kPermit_dn = 1400;
 /// late.
 Config config_of(std::uint8_t node);
 
-/// The node's layout, which names all other `nodes`.
-wire::Layout layout_of(std::uint8_t node, std::span<const std::uint8_t> nodes);
+/// The node's layout, which names all other `nodes`. That of `misfit` has pins for another part, which nobody
+/// told the others.
+wire::Layout layout_of(std::uint8_t node, std::span<const std::uint8_t> nodes, std::uint8_t misfit = 0);
 
 /// The same as non-volatile memory holds it.
 LayoutBlob blob_of(const wire::Layout& layout);

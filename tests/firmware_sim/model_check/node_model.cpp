@@ -93,7 +93,7 @@ NodeModel::NodeModel(NodeSetup setup, Network& network)
     : setup_(std::move(setup)), network_(network), config_(config_of(setup_.node)) {
   config_.table = setup_.table;
   config_.release_guard_enabled = setup_.release_guard;
-  layout_ = blob_of(layout_of(setup_.node, setup_.nodes));
+  layout_ = blob_of(layout_of(setup_.node, setup_.nodes, setup_.misfit));
   base_ = base_of(config_, setup_, layout_);
   for (const Grip grip : {Grip::Open, Grip::Light, Grip::Full})
     measured_[static_cast<std::size_t>(grip)] = measured(config_, grip);
@@ -124,7 +124,7 @@ LocalId NodeModel::intern(Local& local) {
 
 Traits NodeModel::traits_of(const Local& local) const {
   const NvmRecord& wanted = local.core.store.record;
-  Traits traits{.holds = local.grip == Grip::Full && answers(local),
+  Traits traits{.holds = local.grip == Grip::Full && answers(local) && setup_.node != setup_.misfit,
                 .stored = traits_of_record(local.stored),
                 .wanted = traits_of_record(wanted)};
   if (local.pending_count > 0 || local.core.store.record_waits) return traits;
@@ -378,7 +378,7 @@ LocalId NodeModel::loaded() {
     if (!config_.passive) run(local, {.what = Happening::Jaws});
   }
   command(wire::Op::Squeeze);
-  for (int i = 0; i < 4 && local.core.id == StateId::Squeezing; ++i) {
+  for (int i = 0; i < 4; ++i) {
     if (!config_.passive) run(local, {.what = Happening::Jaws});
     run(local, {.fired = kStable});
   }

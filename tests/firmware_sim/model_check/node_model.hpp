@@ -47,6 +47,7 @@ struct NodeSetup {
   std::vector<std::uint8_t> nodes;  ///< all of the cell
   std::uint16_t tokens = 1;         ///< offers that this node may make
   bool release_guard = true;
+  std::uint8_t misfit = 0;  ///< node with a layout of another part
   const StateTable* table = &kStateTable;
 };
 

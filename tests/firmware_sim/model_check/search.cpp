@@ -18,13 +18,14 @@ double cpu_now_s() {
 
 class Search {
  public:
-  Search(const Cell& cell, const Bounds& bounds) : cell_(cell), bounds_(bounds) {
-    for (const std::uint8_t node : cell.nodes) {
+  Search(const Scenario& scenario, const Bounds& bounds) : scenario_(scenario), bounds_(bounds) {
+    for (const std::uint8_t node : scenario.nodes) {
       models_.push_back(std::make_unique<NodeModel>(NodeSetup{.node = node,
-                                                              .nodes = cell.nodes,
-                                                              .tokens = cell.tokens,
-                                                              .release_guard = cell.release_guard,
-                                                              .table = cell.table},
+                                                              .nodes = scenario.nodes,
+                                                              .tokens = scenario.tokens,
+                                                              .release_guard = scenario.release_guard,
+                                                              .misfit = scenario.misfit,
+                                                              .table = scenario.table},
                                                     network_));
     }
   }
@@ -82,8 +83,13 @@ class Search {
   void explore() {
     Global first;
     for (std::size_t index = 0; index < models_.size(); ++index) {
-      const bool loaded = cell_.nodes[index] == cell_.loaded;
+      const bool loaded = scenario_.nodes[index] == scenario_.loaded;
       first = first.with(index, loaded ? models_[index]->loaded() : models_[index]->ready());
+    }
+    for (const Saying& saying : scenario_.history) {
+      const std::optional<int> bit = saying.holds_well ? network_.heard(saying.node, saying.state)
+                                                       : network_.heard(saying.node, saying.custody);
+      if (bit) first.said |= Said{1} << *bit;
     }
     states_.insert(first, StateSet::kNone);
     if (const auto wrong = wrong_in(first)) return report(*wrong, 0, nullptr);
@@ -147,7 +153,7 @@ class Search {
           ++count;
           break;
         case Custody::Latched:
-          if (released(state, record, cell_.nodes[index], view)) ++count;
+          if (released(state, record, scenario_.nodes[index], view)) ++count;
           break;
         case Custody::Empty:
         case Custody::Released:
@@ -161,7 +167,7 @@ class Search {
                               Traits::Record Traits::*view) const {
     if ((state.said & network_.released(latch.peer, receiver, latch.token)) != 0) return true;
     for (std::size_t index = 0; index < models_.size(); ++index) {
-      if (cell_.nodes[index] != latch.peer) continue;
+      if (scenario_.nodes[index] != latch.peer) continue;
       const Traits::Record& giver = traits(state, index).*view;
       if (giver.custody == Custody::Released && giver.peer == receiver && giver.token == latch.token)
         return true;
@@ -192,7 +198,7 @@ class Search {
     if (taken.needed == 0) return true;
     const std::uint8_t sender = network_.at(taken.move->stimulus.message).node;
     for (std::size_t index = 0; index < models_.size(); ++index) {
-      if (cell_.nodes[index] == sender)
+      if (scenario_.nodes[index] == sender)
         return (taken.needed & ~models_[index]->repeats(state.node(index))) == 0;
     }
     return false;
@@ -246,14 +252,15 @@ class Search {
   std::string describe(const Global& state) const {
     std::string text = "  at first:\n";
     for (std::size_t index = 0; index < models_.size(); ++index)
-      text +=
-          "    " + station(cell_.nodes[index]) + ": " + models_[index]->describe(state.node(index)) + "\n";
+      text += "    " + station(scenario_.nodes[index]) + ": " + models_[index]->describe(state.node(index)) +
+              "\n";
     return text;
   }
 
   std::string describe_move(const Taken& taken) const {
-    return "  " + station(cell_.nodes[taken.index]) + " " + model::describe(taken.move->stimulus, network_) +
-           "\n    -> " + models_[taken.index]->describe(taken.move->next) + "\n";
+    return "  " + station(scenario_.nodes[taken.index]) + " " +
+           model::describe(taken.move->stimulus, network_) + "\n    -> " +
+           models_[taken.index]->describe(taken.move->next) + "\n";
   }
 
   std::string describe_way(const Global& from, const Global& to) {
@@ -266,7 +273,7 @@ class Search {
     return text;
   }
 
-  Cell cell_;
+  Scenario scenario_;
   Bounds bounds_;
   Network network_;
   std::vector<std::unique_ptr<NodeModel>> models_;
@@ -293,8 +300,8 @@ std::string name_of(Invariant invariant) {
   }
 }
 
-Findings search(const Cell& cell, const Bounds& bounds) {
-  return Search(cell, bounds).run();
+Findings search(const Scenario& scenario, const Bounds& bounds) {
+  return Search(scenario, bounds).run();
 }
 
 }  // namespace pinjaw::core::model

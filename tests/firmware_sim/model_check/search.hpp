@@ -25,12 +25,14 @@ enum Invariant : std::uint8_t {
 
 std::string name_of(Invariant invariant);
 
-struct Cell {
+struct Scenario {
   std::vector<std::uint8_t> nodes{kArm, kPedestal};
   std::uint8_t loaded = kArm;  ///< it has the part in the beginning
   std::uint16_t tokens = 1;    ///< offers of each node
   bool release_guard = true;
   const StateTable* table = &kStateTable;
+  std::uint8_t misfit = 0;  ///< a node whose committed layout is that of another part: its grip holds nothing
+  std::vector<Saying> history{};  ///< frames said before, of handoffs long over
 };
 
 struct Bounds {
@@ -56,6 +58,6 @@ struct Findings {
   std::size_t memory_bytes = 0;  ///< of states, parents and the set
 };
 
-Findings search(const Cell& cell, const Bounds& bounds);
+Findings search(const Scenario& scenario, const Bounds& bounds);
 
 }  // namespace pinjaw::core::model
