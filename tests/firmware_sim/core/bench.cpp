@@ -101,15 +101,14 @@ std::uint32_t Bench::random() {
   return random_ >> 16;
 }
 
-bool Bench::lost() {
-  return static_cast<int>(random() % 100U) < loss_percent;
+bool Bench::chance(int percent) {
+  return static_cast<int>(random() % 100U) < percent;
 }
 
 void Bench::reorder(std::vector<wire::Frame>& frames, std::uint8_t to) {
-  constexpr std::uint32_t kShare = 20;  // one in so many
   constexpr std::uint32_t kMost_ms = 30;
   std::erase_if(frames, [&](const wire::Frame& frame) {
-    if (random() % kShare != 0) return false;
+    if (!chance(late_percent)) return false;
     late_.push_back({frame, to, now_ms + 1 + static_cast<int>(random() % kMost_ms)});
     return true;
   });
@@ -135,8 +134,9 @@ std::vector<wire::Frame> Bench::delivered(const std::vector<wire::Frame>& frames
     if (own || lost()) continue;
     received.push_back(frame);
     if (duplicates && lost()) received.push_back(frame);
+    if (duplicate_percent > 0 && chance(duplicate_percent)) received.push_back(frame);
   }
-  if (reorders) reorder(received, to);
+  if (late_percent > 0) reorder(received, to);
   if (on_delivery) on_delivery(to, received);
   return received;
 }

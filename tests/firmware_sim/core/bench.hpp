@@ -92,8 +92,9 @@ class Bench {
   std::uint16_t host_permit = 0x3FFF;
   std::uint16_t epoch = 77;
   int loss_percent = 0;
-  bool duplicates = false;
-  bool reorders = false;  ///< some frames come up to 30 ms late, after others
+  bool duplicates = false;    ///< as many frames come twice as are lost
+  int duplicate_percent = 0;  ///< besides
+  int late_percent = 0;       ///< come up to 30 ms late, after others
   /// Called with what a station is about to hear, which it may change.
   std::function<void(std::uint8_t to, std::vector<wire::Frame>& frames)> on_delivery;
   /// Called after each millisecond.
@@ -103,7 +104,8 @@ class Bench {
 
  private:
   void beat(std::vector<wire::Frame>& frames);
-  bool lost();
+  bool chance(int percent);
+  bool lost() { return chance(loss_percent); }
   /// What of `frames` gets to `to`; its own do not come back.
   std::vector<wire::Frame> delivered(const std::vector<wire::Frame>& frames, std::uint8_t to);
   struct Late {
