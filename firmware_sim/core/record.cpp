@@ -89,31 +89,30 @@ bool later(std::uint32_t one, std::uint32_t other) {
   return ahead != 0 && ahead < 0x80000000U;
 }
 
-/// The pair of slots of one value, read.
-template <class Value>
+/// The two slots of one value: their sequences, where they are good.
 struct Pair {
-  std::array<std::optional<Stored<Value>>, 2> slots;
+  std::array<bool, 2> good{};
+  std::array<std::uint32_t, 2> sequence{};
 
-  /// The slot with the present value; nothing where neither is good.
-  [[nodiscard]] std::optional<std::size_t> present() const {
-    if (slots[0] && slots[1]) return later(slots[1]->sequence, slots[0]->sequence) ? 1 : 0;
-    if (slots[0]) return 0;
-    if (slots[1]) return 1;
-    return std::nullopt;
+  [[nodiscard]] bool any() const { return good[0] || good[1]; }
+  /// The slot with the present value. Precondition: any().
+  [[nodiscard]] std::size_t present() const {
+    if (!good[0]) return 1;
+    return good[1] && later(sequence[1], sequence[0]) ? 1 : 0;
   }
-  [[nodiscard]] std::size_t first_to_write() const { return present() == 0U ? 1 : 0; }
-  [[nodiscard]] std::uint32_t next_sequence() const {
-    const auto at = present();
-    return at ? slots[*at]->sequence + 1 : 0;
-  }
+  [[nodiscard]] std::size_t first_to_write() const { return any() ? 1 - present() : 0; }
+  [[nodiscard]] std::uint32_t next_sequence() const { return any() ? sequence[present()] + 1 : 0; }
 };
 
-Pair<NvmRecord> records_of(const Memory& memory) {
-  return {{decode_record(memory.records[0]), decode_record(memory.records[1])}};
-}
-
-Pair<LayoutBlob> layouts_of(const Memory& memory) {
-  return {{decode_layout_slot(memory.layouts[0]), decode_layout_slot(memory.layouts[1])}};
+template <class Slot, class Decode>
+Pair look_at(const std::array<Slot, 2>& slots, Decode decode) {
+  Pair pair;
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    const auto stored = decode(slots[i]);
+    pair.good[i] = stored.has_value();
+    if (stored) pair.sequence[i] = stored->sequence;
+  }
+  return pair;
 }
 
 bool is_blank(std::span<const std::uint8_t> slot) {
@@ -180,26 +179,26 @@ std::optional<Stored<LayoutBlob>> decode_layout_slot(std::span<const std::uint8_
 
 NvmImage image_of(const Memory& memory) {
   NvmImage image;
-  const Pair<NvmRecord> records = records_of(memory);
-  if (const auto at = records.present()) {
-    image.record = records.slots[*at]->value;
+  const Pair records = look_at(memory.records, decode_record);
+  if (records.any()) {
+    image.record = decode_record(memory.records[records.present()])->value;
   } else {
     image.readable = is_blank(memory.records[0]) || is_blank(memory.records[1]);
   }
-  const Pair<LayoutBlob> layouts = layouts_of(memory);
-  if (const auto at = layouts.present()) image.layout = layouts.slots[*at]->value;
+  const Pair layouts = look_at(memory.layouts, decode_layout_slot);
+  if (layouts.any()) image.layout = decode_layout_slot(memory.layouts[layouts.present()])->value;
   return image;
 }
 
 MemoryUpdate::MemoryUpdate(const Memory& memory, const NvmWrite& request)
     : has_record_(request.record.has_value()), has_layout_(request.layout.has_value()) {
   if (request.record) {
-    const Pair<NvmRecord> present = records_of(memory);
+    const Pair present = look_at(memory.records, decode_record);
     record_ = encode(Stored<NvmRecord>{present.next_sequence(), *request.record});
     first_record_ = present.first_to_write();
   }
   if (request.layout) {
-    const Pair<LayoutBlob> present = layouts_of(memory);
+    const Pair present = look_at(memory.layouts, decode_layout_slot);
     layout_ = encode(Stored<LayoutBlob>{present.next_sequence(), *request.layout});
     first_layout_ = present.first_to_write();
   }

@@ -25,6 +25,10 @@ plant::Spool plant_spool(core::Spool spool) {
   return plant::Spool::Hold;
 }
 
+core::BusHealth health_of(const bus::Health& health) {
+  return {.off = health.off, .passive = health.passive, .overruns = health.overruns};
+}
+
 plant::Actuation actuation_of(const core::Valves& valves) {
   return {.spool = plant_spool(valves.spool),
           .close_set_pa = valves.close_set_mbar * kPa_per_mbar,
@@ -106,9 +110,11 @@ bus::Expected<void> Node::run_firmware(const Surroundings& surroundings) {
   const core::Outputs outputs = core::step(firmware_, {.elapsed_ms = 1,
                                                        .received = received_,
                                                        .sensors = read_sensors(surroundings),
-                                                       .nvm = memory_.status()});
+                                                       .nvm = memory_.status(),
+                                                       .bus = health_of(bus_->health())});
   if (outputs.nvm) memory_.store(*outputs.nvm);
   valves_ = outputs.valves;
+  if (outputs.restart_bus) bus_->restart();
   bus::Expected<void> result;
   for (const wire::Frame& frame : outputs.send.view()) {
     const auto sent = bus_->send(frame);

@@ -43,8 +43,24 @@ struct Statistics {
   std::uint64_t sent = 0;
   std::uint64_t received = 0;
   std::uint64_t lost_receiving = 0;  ///< came, and were dropped for want of room
-  std::uint64_t lost_sending = 0;    ///< taken by send() and never sent
+  std::uint64_t lost_sending = 0;    ///< given to send() and never sent
   std::uint64_t error_frames = 0;
+  std::uint64_t stalls = 0;          ///< times a frame found the driver's queue full, and waited
+  std::uint64_t overruns = 0;        ///< times the CAN controller itself had no room for a frame
+  std::uint64_t unacknowledged = 0;  ///< times nobody acknowledged a frame
+  std::uint64_t passive = 0;         ///< times the controller became error-passive
+  std::uint64_t bus_off = 0;         ///< times it took itself off the bus
+  std::uint64_t restarts = 0;        ///< times it came back from there
+  std::uint64_t outages = 0;         ///< times the interface went down or away
+
+  Statistics& operator+=(const Statistics& other);
+};
+
+/// What the CAN controller of an end says of itself.
+struct Health {
+  bool off = false;            ///< bus-off: nothing is sent or received
+  bool passive = false;        ///< error-passive
+  std::uint32_t overruns = 0;  ///< frames or more that found no room on their way here
 };
 
 /// Frames with (id & mask) == (filter id & mask) pass; standard frames only.
@@ -68,6 +84,10 @@ class Bus {
   /// The next received frame, nothing where none waits. Error frames come here too.
   virtual Expected<std::optional<Received>> receive() = 0;
   [[nodiscard]] virtual Statistics statistics() const = 0;
+  /// A bus without CAN controllers of its own is always well.
+  [[nodiscard]] virtual Health health() const { return {}; }
+  /// Lets a controller that is bus-off come back.
+  virtual void restart() {}
 };
 
 }  // namespace pinjaw::bus

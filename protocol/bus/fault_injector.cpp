@@ -41,6 +41,9 @@ Fate FaultInjector::meet(const wire::Frame& frame, std::int64_t time_us) {
       case FaultKind::Delay:
         fate.delay_us += static_cast<std::int64_t>(uniform() * static_cast<double>(fault.delay_us));
         break;
+      case FaultKind::Destroy:
+        fate.destroyed = true;
+        break;
     }
   }
   return fate;

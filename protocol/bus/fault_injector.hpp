@@ -12,6 +12,7 @@ namespace pinjaw::bus {
 struct Fate {
   wire::Frame frame;  ///< with its flipped bits
   bool dropped = false;
+  bool destroyed = false;     ///< by an error on the bus
   bool repeated = false;      ///< the bus carries it once more
   std::int64_t delay_us = 0;  ///< it is received so much later
 };

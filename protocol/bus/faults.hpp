@@ -10,6 +10,7 @@ enum class FaultKind : std::uint8_t {
   Duplicate,  ///< everybody gets it twice
   Corrupt,    ///< one or two of its payload bits flip
   Delay,      ///< it comes later, so that others overtake it
+  Destroy,    ///< an error on the bus: everyone notices, its sender tries again, error counters rise
 };
 
 /// A disturbance of frames between two times: each matching frame is hit with a probability.

@@ -24,6 +24,10 @@ struct Load {
 /// A CAN bus inside one process, in virtual time: the lowest id waiting goes first, a frame lasts as long as
 /// its bits, stuff bits included, and nothing happens but in advance_to(). The same calls give the same
 /// frames.
+///
+/// Each end has a CAN controller with the error counters of ISO 11898-1: a frame that nobody acknowledges or
+/// that an error destroys is sent again, and whose own frames fail too often goes error passive and then off
+/// the bus, until restart() and 128 times 11 recessive bits.
 class SimBus {
  public:
   struct Settings {

@@ -185,6 +185,7 @@ TEST(SimBus, is_silent_for_an_end_that_is_gone) {
   SimBus bus;
   auto a = bus.open();
   const auto b = bus.open();
+  const auto listener = bus.open();
   ASSERT_TRUE(a->send(frame_of(0x100)).has_value());
   a.reset();
   ASSERT_TRUE(b->send(frame_of(0x101)).has_value());
