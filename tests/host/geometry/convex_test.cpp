@@ -10,7 +10,7 @@
 namespace pinjaw::geometry {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kEndless = std::numeric_limits<double>::infinity();
 
 SweptCylinder pin(const Vector2d& from, const Vector2d& to, double radius_mm, Interval z_mm) {
   return {{from, to, radius_mm}, z_mm};
@@ -29,12 +29,12 @@ TEST(Overlap, solids_one_above_the_other_are_apart) {
 }
 
 TEST(Overlap, an_infinite_end_reaches_every_height) {
-  const Solid column = pin({0, 0}, {0, 0}, 2, {-kInfinity, 5});
+  const Solid column = pin({0, 0}, {0, 0}, 2, {-kEndless, 5});
   EXPECT_EQ(overlap(column, pin({3, 0}, {9, 0}, 1.01, {-1000, -900})), Overlap::Overlapping);
   EXPECT_EQ(overlap(column, pin({3, 0}, {9, 0}, 0.99, {-1000, -900})), Overlap::Apart);
-  EXPECT_EQ(overlap(column, pin({1, 0}, {9, 0}, 1, {4, kInfinity})), Overlap::Overlapping);
-  EXPECT_EQ(overlap(column, pin({1, 0}, {9, 0}, 1, {6, kInfinity})), Overlap::Apart);
-  EXPECT_EQ(overlap(column, pin({1, 0}, {9, 0}, 1, {-kInfinity, kInfinity})), Overlap::Overlapping);
+  EXPECT_EQ(overlap(column, pin({1, 0}, {9, 0}, 1, {4, kEndless})), Overlap::Overlapping);
+  EXPECT_EQ(overlap(column, pin({1, 0}, {9, 0}, 1, {6, kEndless})), Overlap::Apart);
+  EXPECT_EQ(overlap(column, pin({1, 0}, {9, 0}, 1, {-kEndless, kEndless})), Overlap::Overlapping);
 }
 
 TEST(Overlap, a_pin_beside_a_turned_block_is_apart_until_it_reaches_the_corner) {

@@ -15,7 +15,7 @@ using testing::block;
 using testing::blocks;
 using testing::prism;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNowhere_mm = std::numeric_limits<double>::infinity();
 
 Sweep disc(const Vector2d& center_mm, double radius_mm) {
   return {center_mm, center_mm, radius_mm};
@@ -34,8 +34,8 @@ TriangleMesh ramp() {
 
 TEST(Surface, an_empty_mesh_has_nothing_anywhere) {
   const Surface surface{TriangleMesh{}};
-  EXPECT_EQ(surface.lowest_z_mm(disc({0, 0}, 1)), kInfinity);
-  EXPECT_EQ(surface.highest_z_mm(disc({0, 0}, 1)), -kInfinity);
+  EXPECT_EQ(surface.lowest_z_mm(disc({0, 0}, 1)), kNowhere_mm);
+  EXPECT_EQ(surface.highest_z_mm(disc({0, 0}, 1)), -kNowhere_mm);
   EXPECT_FALSE(surface.first_hit({}));
   EXPECT_FALSE(surface.lowest_above({0, 0}));
   EXPECT_FALSE(surface.meets(disc({0, 0}, 1), {}));
@@ -47,7 +47,7 @@ TEST(Surface, a_facet_without_area_still_counts_as_the_piece_it_is) {
   EXPECT_NEAR(needle.highest_z_mm(disc({2, 0}, 1)), 4, 1e-8);
   const Surface point{triangle({1, 1, 2}, {1, 1, 2}, {1, 1, 2})};
   EXPECT_EQ(point.lowest_z_mm(disc({1, 1}, 0)), 2);
-  EXPECT_EQ(point.lowest_z_mm(disc({1, 2}, 0.5)), kInfinity);
+  EXPECT_EQ(point.lowest_z_mm(disc({1, 2}, 0.5)), kNowhere_mm);
   EXPECT_FALSE(point.first_hit({{1, 1, 0}, Vector3d::UnitZ()}));
 }
 
@@ -56,7 +56,7 @@ TEST(Surface, an_upright_facet_answers_along_its_trace) {
   const Surface wall{triangle({0, 0, 0}, {0, 10, 10}, {0, 0, 20})};
   EXPECT_NEAR(wall.lowest_z_mm(disc({3, 5}, 5)), 1, 1e-8);  // the chord is y in [1, 9]
   EXPECT_NEAR(wall.highest_z_mm(disc({3, 5}, 5)), 19, 1e-8);
-  EXPECT_EQ(wall.lowest_z_mm(disc({3, 5}, 2.9)), kInfinity);
+  EXPECT_EQ(wall.lowest_z_mm(disc({3, 5}, 2.9)), kNowhere_mm);
 }
 
 TEST(Surface, the_lowest_point_of_a_slope_lies_on_the_rim_of_the_disc) {
@@ -72,8 +72,8 @@ TEST(Surface, a_slab_cuts_facets_rather_than_leaving_them_out) {
   const Surface surface{ramp()};
   EXPECT_NEAR(surface.lowest_z_mm(disc({4, 7}, 2), {4.5, 5}), 4.5, 1e-8);
   EXPECT_NEAR(surface.highest_z_mm(disc({4, 7}, 2), {4.5, 5}), 5, 1e-8);
-  EXPECT_EQ(surface.lowest_z_mm(disc({4, 7}, 2), {6.1, 9}), kInfinity);
-  EXPECT_EQ(surface.highest_z_mm(disc({4, 7}, 2), {1, 3.9}), -kInfinity);
+  EXPECT_EQ(surface.lowest_z_mm(disc({4, 7}, 2), {6.1, 9}), kNowhere_mm);
+  EXPECT_EQ(surface.highest_z_mm(disc({4, 7}, 2), {1, 3.9}), -kNowhere_mm);
   EXPECT_TRUE(surface.meets(disc({4, 7}, 2), {4.5, 5}));
   EXPECT_FALSE(surface.meets(disc({4, 7}, 2), {6.1, 9}));
 }
@@ -82,16 +82,16 @@ TEST(Surface, a_slab_finds_the_wall_between_two_floors) {
   const Surface surface{block({{0, 0, 0}, {10, 10, 10}})};
   EXPECT_EQ(surface.lowest_z_mm(disc({0, 5}, 1), {3, 7}), 3);
   EXPECT_EQ(surface.highest_z_mm(disc({0, 5}, 1), {3, 7}), 7);
-  EXPECT_EQ(surface.lowest_z_mm(disc({5, 5}, 1), {3, 7}), kInfinity)
+  EXPECT_EQ(surface.lowest_z_mm(disc({5, 5}, 1), {3, 7}), kNowhere_mm)
       << "inside the block there is no surface";
 }
 
 TEST(Surface, a_touch_counts_and_a_gap_of_a_millionth_does_not) {
   const Surface surface{block({{0, 0, 2}, {10, 10, 10}})};
   EXPECT_EQ(surface.lowest_z_mm(disc({-3, 5}, 3)), 2);
-  EXPECT_EQ(surface.lowest_z_mm(disc({-3 - 1e-6, 5}, 3)), kInfinity);
+  EXPECT_EQ(surface.lowest_z_mm(disc({-3 - 1e-6, 5}, 3)), kNowhere_mm);
   EXPECT_EQ(surface.lowest_z_mm({{-3, -20}, {-3, 20}, 3}), 2) << "sliding along a wall";
-  EXPECT_EQ(surface.lowest_z_mm({{-3 - 1e-6, -20}, {-3 - 1e-6, 20}, 3}), kInfinity);
+  EXPECT_EQ(surface.lowest_z_mm({{-3 - 1e-6, -20}, {-3 - 1e-6, 20}, 3}), kNowhere_mm);
   EXPECT_EQ(surface.lowest_z_mm(disc({-3, -4}, 5)), 2) << "a corner";
 }
 

@@ -22,7 +22,7 @@ model::Wrench force(double x, double y, double z) {
   return wrench;
 }
 
-Grasp box() {
+Grasp boxed_grasp() {
   base::Random unused(1);
   return zoo::random_grasp(zoo::Family::SymmetricBox, unused);
 }
@@ -120,7 +120,7 @@ TEST(Verdict, never_finds_a_grasp_that_wedges_but_does_not_jam) {
 }
 
 TEST(Verdict, discards_a_grasp_whose_pin_jams) {
-  Grasp grasp = box();
+  Grasp grasp = boxed_grasp();
   for (PointContact& contact : grasp.contacts) {
     if (contact.pin == 1) contact.n_P = direction_deg(80);  // 10 degrees from the face, friction of 11.3
   }
@@ -130,7 +130,7 @@ TEST(Verdict, discards_a_grasp_whose_pin_jams) {
 }
 
 TEST(Verdict, names_the_first_wrench_that_no_squeeze_resists) {
-  Grasp grasp = box();
+  Grasp grasp = boxed_grasp();
   grasp.mu = 0;
   const std::vector<model::Wrench> loads{force(3, 0, 0), force(0, 0, -1), force(0, 0, 1)};
   const ForceVerdict verdict = evaluate(grasp, loads, {});
@@ -140,7 +140,7 @@ TEST(Verdict, names_the_first_wrench_that_no_squeeze_resists) {
 
 TEST(Verdict, names_the_first_of_equally_hard_wrenches) {
   const std::vector<model::Wrench> loads{force(3, 0, 0), force(0, 0, -1), force(0, 0, 1)};
-  const ForceVerdict verdict = evaluate(box(), loads, {});
+  const ForceVerdict verdict = evaluate(boxed_grasp(), loads, {});
   ASSERT_TRUE(std::holds_alternative<Holds>(verdict));
   EXPECT_EQ(std::get<Holds>(verdict).critical, 1U);
   EXPECT_NEAR(std::get<Holds>(verdict).required_n, std::sqrt(2.0) / 0.2, 1e-9);
@@ -150,15 +150,15 @@ TEST(Verdict, tells_how_much_a_grasp_would_need_beyond_the_usable_force) {
   ForceOptions options;
   options.usable_n = 7;
   const std::vector<model::Wrench> loads{force(0, 0, -1)};
-  const ForceVerdict verdict = evaluate(box(), loads, options);
+  const ForceVerdict verdict = evaluate(boxed_grasp(), loads, options);
   ASSERT_TRUE(std::holds_alternative<TooStrong>(verdict));
   EXPECT_NEAR(std::get<TooStrong>(verdict).required_n, 7.07, 0.01);
   options.friction = model::FrictionModel::Cone;  // needs 5 N
-  EXPECT_TRUE(std::holds_alternative<Holds>(evaluate(box(), loads, options)));
+  EXPECT_TRUE(std::holds_alternative<Holds>(evaluate(boxed_grasp(), loads, options)));
 }
 
 TEST(Verdict, that_nothing_is_required_without_loads) {
-  const ForceVerdict verdict = evaluate(box(), {}, {});
+  const ForceVerdict verdict = evaluate(boxed_grasp(), {}, {});
   ASSERT_TRUE(std::holds_alternative<Holds>(verdict));
   EXPECT_EQ(std::get<Holds>(verdict).required_n, 0);
 }
