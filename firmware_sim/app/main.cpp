@@ -9,7 +9,7 @@
 #include "firmware_sim/app/members.hpp"
 #include "firmware_sim/app/options.hpp"
 #include "firmware_sim/app/program.hpp"
-#include "protocol/socketcan/socket_bus.hpp"
+#include "protocol/socketcan/lasting_bus.hpp"
 
 namespace {
 
@@ -64,8 +64,8 @@ ExitCode simulate(const jaw_app::Options& options) {
   }
   std::vector<std::unique_ptr<bus::Bus>> buses;
   for (const node::Figures& member : *members) {
-    auto opened =
-        socketcan::SocketBus::open(options.interface, {.filters = jaw_app::filters_of(member.node)});
+    auto opened = socketcan::LastingBus::open(options.interface,
+                                              {.filters = jaw_app::filters_of(member.node), .patient = true});
     if (!opened) return fail(ExitCode::Unavailable, opened.error().message);
     buses.push_back(std::move(*opened));
   }

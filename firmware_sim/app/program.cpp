@@ -6,12 +6,14 @@
 #include <utility>
 
 #include "firmware_sim/app/pace.hpp"
+#include "protocol/bus/statistics.hpp"
 #include "protocol/wire/codec.hpp"
 
 namespace pinjaw::jaw_app {
 namespace {
 
 constexpr std::int64_t kNs_per_s = 1'000'000'000;
+constexpr std::int64_t kTellEvery_ns = kNs_per_s;
 
 std::int64_t now_ns() {
   timespec now{};
@@ -52,6 +54,11 @@ std::vector<bus::Filter> filters_of(int node) {
   for (const MessageType type : {MessageType::Command, MessageType::TransferRequest}) {
     filters.push_back({wire::id_of({type, own}), kOne});
   }
+  // what only this node may say: whoever else does is found out
+  for (const MessageType type : {MessageType::Force, MessageType::Acknowledge, MessageType::Pneumatics,
+                                 MessageType::LayoutStatus, MessageType::Identity}) {
+    filters.push_back({wire::id_of({type, own}), kOne});
+  }
   return filters;
 }
 
@@ -60,7 +67,9 @@ Program::Program(const std::vector<node::Figures>& members, std::vector<std::uni
     : buses_(std::move(buses)),
       server_(std::move(server)),
       world_(join(members, buses_), options.seed),
-      faults_(options.faults) {
+      faults_(options.faults),
+      troubles_(buses_.size()) {
+  for (const node::Figures& member : members) nodes_.push_back(member.node);
   if (options.events) {
     world_.on_event([](const std::string& line) { fmt::print(stderr, "{}\n", line); });
   }
@@ -68,11 +77,17 @@ Program::Program(const std::vector<node::Figures>& members, std::vector<std::uni
 
 void Program::run(const std::atomic<bool>& stop) {
   Pace pace(now_ns());
+  std::int64_t tell_ns = pace.next_ns() + kTellEvery_ns;
   while (!stop) {
     for (int due = pace.due(now_ns()); due > 0 && !stop; --due) step();
     if (server_) server_->serve([this](const bench::Request& request) { return world_.handle(request); });
+    if (pace.next_ns() >= tell_ns) {
+      tell_troubles();
+      tell_ns = pace.next_ns() + kTellEvery_ns;
+    }
     sleep_until(pace.next_ns());
   }
+  tell_troubles();
   if (pace.given_up_ms() > 0)
     tell(fmt::format("{} ms were never simulated: too far behind", pace.given_up_ms()));
 }
@@ -84,6 +99,15 @@ void Program::step() {
   if (failed && !bus_failed_) tell(stepped.error().message);
   if (!failed && bus_failed_) tell("the bus is back");
   bus_failed_ = failed;
+}
+
+void Program::tell_troubles() {
+  for (std::size_t i = 0; i < buses_.size(); ++i) {
+    std::string troubles = bus::to_text(buses_[i]->statistics());
+    if (troubles == troubles_[i]) continue;
+    tell(fmt::format("bus of node {}: {}", nodes_[i], troubles));
+    troubles_[i] = std::move(troubles);
+  }
 }
 
 void Program::start_faults() {

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "firmware_sim/app/options.hpp"
@@ -24,18 +25,23 @@ class Program {
   Program(const std::vector<node::Figures>& members, std::vector<std::unique_ptr<bus::Bus>> buses,
           std::unique_ptr<bench::SocketServer> server, const Options& options);
 
-  /// Runs until `stop`. Tells on stderr when the bus fails and when it comes back.
+  /// Runs until `stop`. Tells on stderr when the bus fails and when it comes back, and, once a second at
+  /// most, what was lost and went wrong on it.
   void run(const std::atomic<bool>& stop);
 
  private:
   void step();
   void start_faults();
+  /// Tells of each node's bus what has gone wrong there, where that is more than was told last.
+  void tell_troubles();
 
   std::vector<std::unique_ptr<bus::Bus>> buses_;
   std::unique_ptr<bench::SocketServer> server_;
   world::World world_;
   std::vector<TimedFault> faults_;
   bool bus_failed_ = false;
+  std::vector<int> nodes_;             ///< number of each bus's node
+  std::vector<std::string> troubles_;  ///< told last, of each bus
 };
 
 }  // namespace pinjaw::jaw_app

@@ -175,6 +175,7 @@ void Run::finish_step(const std::string& result) {
 RunReport Run::report() {
   const bus::Statistics statistics = venue_.bus->statistics();
   report_.bus.frames = statistics.sent + statistics.received;
+  report_.bus.statistics = statistics;
   if (stage_.world != nullptr) {
     const auto reply = stage_.world->ask(bench::AskTruth{});
     if (reply && std::holds_alternative<bench::Truth>(*reply)) report_.plant = std::get<bench::Truth>(*reply);

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "host/base/json_number.hpp"
+#include "protocol/bus/statistics.hpp"
 #include "protocol/wire/names.hpp"
 
 namespace pinjaw::sequence {
@@ -43,6 +44,14 @@ ordered_json plant_json(const std::optional<bench::Truth>& truth) {
   return plant;
 }
 
+ordered_json bus_json(const BusReport& report) {
+  ordered_json bus = {
+      {"frames", report.frames},
+      {"load_percent", report.load_percent ? ordered_json(*report.load_percent) : ordered_json(nullptr)}};
+  for (const bus::Trouble& trouble : bus::kTroubles) bus[trouble.key] = report.statistics.*trouble.count;
+  return bus;
+}
+
 }  // namespace
 
 std::string to_json(const RunReport& report) {
@@ -54,9 +63,7 @@ std::string to_json(const RunReport& report) {
   document["steps"] = ordered_json::array();
   for (const StepReport& step : report.steps) document["steps"].push_back(step_json(step));
   document["plant"] = plant_json(report.plant);
-  document["bus"] = {{"frames", report.bus.frames},
-                     {"load_percent", report.bus.load_percent ? ordered_json(*report.bus.load_percent)
-                                                              : ordered_json(nullptr)}};
+  document["bus"] = bus_json(report.bus);
   return document.dump(1) + "\n";
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "protocol/bench/bench.hpp"
+#include "protocol/bus/bus.hpp"
 #include "protocol/wire/codes.hpp"
 
 namespace pinjaw::sequence {
@@ -32,6 +33,7 @@ struct StepReport {
 struct BusReport {
   std::uint64_t frames = 0;
   std::optional<double> load_percent;  ///< nothing where the bus cannot tell
+  bus::Statistics statistics;          ///< of the host's end
 };
 
 /// What happened in a run. The plant's figures come from the world; nothing where none was simulated.

@@ -5,6 +5,7 @@
 namespace pinjaw::socketcan {
 
 bool SendQueue::push(const wire::Frame& frame, std::int64_t now_us) {
+  drop_stale(now_us);
   if (waiting_.size() >= kMostFrames) return false;
   const auto place =
       std::upper_bound(waiting_.begin(), waiting_.end(), frame.id,
@@ -14,14 +15,23 @@ bool SendQueue::push(const wire::Frame& frame, std::int64_t now_us) {
 }
 
 WriteResult SendQueue::flush(std::int64_t now_us, const Writer& write) {
-  dropped_ += std::erase_if(
-      waiting_, [now_us](const Waiting& waiting) { return now_us - waiting.since_us > kStale_us; });
+  drop_stale(now_us);
   while (!waiting_.empty()) {
     const WriteResult result = write(waiting_.front().frame);
     if (result != WriteResult::Taken) return result;
     waiting_.erase(waiting_.begin());
   }
   return WriteResult::Taken;
+}
+
+void SendQueue::drop_stale(std::int64_t now_us) {
+  dropped_ += std::erase_if(
+      waiting_, [now_us](const Waiting& waiting) { return now_us - waiting.since_us > kStale_us; });
+}
+
+void SendQueue::clear() {
+  dropped_ += waiting_.size();
+  waiting_.clear();
 }
 
 }  // namespace pinjaw::socketcan

@@ -32,8 +32,11 @@ class SendQueue {
   /// Gives Full while something still waits, and Failed as soon as the writer does.
   WriteResult flush(std::int64_t now_us, const Writer& write);
 
+  /// Drops all that wait.
+  void clear();
+
   [[nodiscard]] bool empty() const { return waiting_.empty(); }
-  /// Frames dropped because they had become stale.
+  /// Frames dropped because they had become stale, or by clear().
   [[nodiscard]] std::uint64_t dropped() const { return dropped_; }
 
  private:
@@ -41,6 +44,8 @@ class SendQueue {
     wire::Frame frame;
     std::int64_t since_us = 0;
   };
+  void drop_stale(std::int64_t now_us);
+
   std::vector<Waiting> waiting_;  ///< by id, then by age
   std::uint64_t dropped_ = 0;
 };

@@ -3,6 +3,7 @@
 #include <linux/can.h>
 #include <linux/can/error.h>
 #include <linux/can/raw.h>
+#include <linux/sock_diag.h>
 #include <net/if.h>
 #include <poll.h>
 #include <sys/ioctl.h>
@@ -19,16 +20,13 @@
 
 namespace pinjaw::socketcan {
 
-namespace {
-
-constexpr int kReceiveBuffer_bytes = 4 << 20;  // the default holds 278 frames, 75 ms of a full 500 kbit/s bus
-
-/// Only for how long frames have waited.
 std::int64_t steady_us() {
   return std::chrono::duration_cast<std::chrono::microseconds>(
              std::chrono::steady_clock::now().time_since_epoch())
       .count();
 }
+
+namespace {
 
 template <class Value>
 bool set_option(int descriptor, int level, int name, const Value& value) {
@@ -54,10 +52,9 @@ int configure(int descriptor, const Settings& settings) {
   const int on = 1;
   if (!set_option(descriptor, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, errors)) return errno;
   if (settings.hear_self && !set_option(descriptor, SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, on)) return errno;
-  if (!set_option(descriptor, SOL_SOCKET, SO_RXQ_OVFL, on)) return errno;
   if (!set_option(descriptor, SOL_SOCKET, SO_TIMESTAMP, on)) return errno;
-  if (!set_option(descriptor, SOL_SOCKET, SO_RCVBUFFORCE, kReceiveBuffer_bytes) &&
-      !set_option(descriptor, SOL_SOCKET, SO_RCVBUF, kReceiveBuffer_bytes)) {
+  if (!set_option(descriptor, SOL_SOCKET, SO_RCVBUFFORCE, settings.receive_buffer_bytes) &&
+      !set_option(descriptor, SOL_SOCKET, SO_RCVBUF, settings.receive_buffer_bytes)) {
     return errno;
   }
   return 0;
@@ -107,27 +104,25 @@ bus::Origin origin_of(int flags) {
   return (flags & MSG_DONTROUTE) != 0 ? bus::Origin::SameMachine : bus::Origin::Elsewhere;
 }
 
-/// What the kernel tells beside a frame.
-struct Ancillary {
-  std::int64_t time_us = 0;
-  std::optional<std::uint32_t> overflow;
-};
-
-Ancillary ancillary_of(msghdr& message) {
-  Ancillary ancillary;
+/// The kernel's time of a frame; 0 where it tells none.
+std::int64_t time_us_of(msghdr& message) {
   for (cmsghdr* entry = CMSG_FIRSTHDR(&message); entry != nullptr; entry = CMSG_NXTHDR(&message, entry)) {
-    if (entry->cmsg_level != SOL_SOCKET) continue;
-    if (entry->cmsg_type == SO_TIMESTAMP) {
-      timeval time{};
-      std::memcpy(&time, CMSG_DATA(entry), sizeof time);
-      ancillary.time_us = std::int64_t{time.tv_sec} * 1'000'000 + time.tv_usec;
-    } else if (entry->cmsg_type == SO_RXQ_OVFL) {
-      std::uint32_t dropped = 0;
-      std::memcpy(&dropped, CMSG_DATA(entry), sizeof dropped);
-      ancillary.overflow = dropped;
-    }
+    if (entry->cmsg_level != SOL_SOCKET || entry->cmsg_type != SO_TIMESTAMP) continue;
+    timeval time{};
+    std::memcpy(&time, CMSG_DATA(entry), sizeof time);
+    return std::int64_t{time.tv_sec} * 1'000'000 + time.tv_usec;
   }
-  return ancillary;
+  return 0;
+}
+
+/// Frames that the socket had no room for. SO_RXQ_OVFL would tell the same count, but only beside the next
+/// frame.
+std::uint32_t overflow_of(int descriptor) {
+  std::array<std::uint32_t, SK_MEMINFO_VARS> memory{};
+  socklen_t size = sizeof memory;
+  return ::getsockopt(descriptor, SOL_SOCKET, SO_MEMINFO, memory.data(), &size) == 0
+             ? memory[SK_MEMINFO_DROPS]
+             : 0;
 }
 
 }  // namespace
@@ -136,37 +131,50 @@ bus::Expected<std::unique_ptr<SocketBus>> SocketBus::open(const std::string& int
                                                           const Settings& settings) {
   const int descriptor = ::socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, CAN_RAW);
   if (descriptor < 0) return tl::unexpected(explain(errno, interface));
-  std::unique_ptr<SocketBus> opened(new SocketBus(descriptor, interface));
+  std::unique_ptr<SocketBus> opened(new SocketBus(descriptor, interface, settings));
   if (const int error = configure(descriptor, settings)) return tl::unexpected(explain(error, interface));
   if (const int error = attach(descriptor, interface)) return tl::unexpected(explain(error, interface));
   return opened;
 }
 
-SocketBus::SocketBus(int descriptor, std::string interface)
-    : descriptor_(descriptor), interface_(std::move(interface)) {}
+SocketBus::SocketBus(int descriptor, std::string interface, const Settings& settings)
+    : descriptor_(descriptor),
+      interface_(std::move(interface)),
+      now_us_(settings.now_us),
+      watch_(settings.patient) {}
 
 SocketBus::~SocketBus() {
   ::close(descriptor_);
 }
 
 WriteResult SocketBus::write(const wire::Frame& frame) {
+  if (watch_.off()) return WriteResult::Full;  // the kernel would take it, and drop it without a word
   const can_frame raw = to_raw(frame);
   if (::write(descriptor_, &raw, sizeof raw) == static_cast<ssize_t>(sizeof raw)) {
     ++statistics_.sent;
     return WriteResult::Taken;
   }
   write_error_ = errno;
-  return write_error_ == ENOBUFS || write_error_ == EAGAIN ? WriteResult::Full : WriteResult::Failed;
+  if (write_error_ != ENOBUFS && write_error_ != EAGAIN) return WriteResult::Failed;
+  ++statistics_.stalls;
+  return WriteResult::Full;
 }
 
 bus::Expected<void> SocketBus::flush() {
-  const auto result = queue_.flush(steady_us(), [this](const wire::Frame& frame) { return write(frame); });
-  if (result == WriteResult::Failed) return tl::unexpected(explain(write_error_, interface_));
-  return {};
+  const auto result = queue_.flush(now_us_(), [this](const wire::Frame& frame) { return write(frame); });
+  if (result != WriteResult::Failed) return {};
+  return fail(write_error_);
+}
+
+tl::unexpected<bus::Failure> SocketBus::fail(int error) {
+  queue_.clear();
+  failed_ = explain(error, interface_);
+  return tl::unexpected(*failed_);
 }
 
 bus::Expected<void> SocketBus::send(const wire::Frame& frame) {
-  if (!queue_.push(frame, steady_us())) {
+  if (failed_) return tl::unexpected(*failed_);
+  if (!queue_.push(frame, now_us_())) {
     ++statistics_.lost_sending;
     return tl::unexpected(explain(ENOBUFS, interface_));
   }
@@ -174,6 +182,7 @@ bus::Expected<void> SocketBus::send(const wire::Frame& frame) {
 }
 
 bus::Expected<std::optional<bus::Received>> SocketBus::receive() {
+  if (failed_) return tl::unexpected(*failed_);
   if (!queue_.empty()) {
     if (const auto flushed = flush(); !flushed) return tl::unexpected(flushed.error());
   }
@@ -187,21 +196,25 @@ bus::Expected<std::optional<bus::Received>> SocketBus::receive() {
   message.msg_controllen = control.size();
   const ssize_t size = ::recvmsg(descriptor_, &message, MSG_DONTWAIT);
   if (size < 0 && (errno == EAGAIN || errno == EINTR)) return std::nullopt;
-  if (size < 0) return tl::unexpected(explain(errno, interface_));
-  const Ancillary ancillary = ancillary_of(message);
-  if (ancillary.overflow) overflow_ = *ancillary.overflow;
+  if (size < 0) return fail(errno);
   if (size != static_cast<ssize_t>(sizeof raw)) return std::nullopt;
-  const bus::Received received{from_raw(raw), ancillary.time_us, origin_of(message.msg_flags)};
-  if (received.frame.kind == wire::FrameKind::Error) ++statistics_.error_frames;
+  const bus::Received received{from_raw(raw), time_us_of(message), origin_of(message.msg_flags)};
+  watch_.take(received, statistics_);
   ++statistics_.received;
   return received;
 }
 
 bus::Statistics SocketBus::statistics() const {
   bus::Statistics statistics = statistics_;
-  statistics.lost_receiving = overflow_;
+  statistics.lost_receiving = overflow_of(descriptor_);
   statistics.lost_sending += queue_.dropped();
   return statistics;
+}
+
+bus::Health SocketBus::health() const {
+  return {.off = watch_.off(),
+          .passive = watch_.passive(),
+          .overruns = overflow_of(descriptor_) + static_cast<std::uint32_t>(statistics_.overruns)};
 }
 
 void SocketBus::wait(std::int64_t timeout_us) {

@@ -1,20 +1,31 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "protocol/bus/bus.hpp"
+#include "protocol/socketcan/controller_watch.hpp"
 #include "protocol/socketcan/send_queue.hpp"
 
 namespace pinjaw::socketcan {
 
+/// Microseconds that never fall; only differences count.
+using Clock = std::function<std::int64_t()>;
+std::int64_t steady_us();
+
 struct Settings {
   std::vector<bus::Filter> filters{};  ///< none: every frame; error frames always come
   bool hear_self = false;  ///< also receive own frames, as Origin::Self: proof that they were sent
+  int receive_buffer_bytes = 4 << 20;  ///< the kernel's own holds 278 frames, 75 ms of a full 500 kbit/s bus
+  bool patient = false;      ///< bus-off lasts until restart(), too, not only until the kernel restarts
+  Clock now_us = steady_us;  ///< for how long frames have waited
 };
 
 /// A CAN interface of this machine (SocketCAN, raw sockets). Needs no thread: it never waits but in wait().
+/// What the driver has no room for waits in a SendQueue, as does everything while the controller is bus-off;
+/// an interface that went down or away fails every call from then on (LastingBus opens it again).
 class SocketBus final : public bus::Bus {
  public:
   /// Opens `interface`, such as can0 or vcan0; where that fails, a sentence that tells the way out.
@@ -30,6 +41,8 @@ class SocketBus final : public bus::Bus {
   bus::Expected<void> send(const wire::Frame& frame) override;
   bus::Expected<std::optional<bus::Received>> receive() override;
   [[nodiscard]] bus::Statistics statistics() const override;
+  [[nodiscard]] bus::Health health() const override;
+  void restart() override { watch_.permit_restart(); }
 
   /// Waits until something can be received, or `timeout_us` passed.
   void wait(std::int64_t timeout_us);
@@ -37,15 +50,19 @@ class SocketBus final : public bus::Bus {
   [[nodiscard]] int descriptor() const { return descriptor_; }
 
  private:
-  SocketBus(int descriptor, std::string interface);
+  SocketBus(int descriptor, std::string interface, const Settings& settings);
   bus::Expected<void> flush();
+  /// What an errno means; from now on every call gives it.
+  tl::unexpected<bus::Failure> fail(int error);
   WriteResult write(const wire::Frame& frame);
 
   int descriptor_;
   std::string interface_;
+  Clock now_us_;
   SendQueue queue_;
   int write_error_ = 0;
-  std::uint32_t overflow_ = 0;  ///< frames the socket had no room for, as the kernel counts them
+  std::optional<bus::Failure> failed_;
+  ControllerWatch watch_;
   bus::Statistics statistics_;
 };
 

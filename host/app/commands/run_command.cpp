@@ -12,6 +12,7 @@
 #include "host/cell/read_cell.hpp"
 #include "host/config/read.hpp"
 #include "host/sequence/run.hpp"
+#include "protocol/bus/statistics.hpp"
 
 namespace pinjaw::app {
 
@@ -163,6 +164,8 @@ std::string summary_of(const sequence::RunReport& report) {
     text += "undersampled: a drawn load needed more squeeze than the plan's required_n\n";
   text += fmt::format("{} frames", report.bus.frames);
   if (report.bus.load_percent) text += fmt::format(", {:.1f} % bus load", *report.bus.load_percent);
+  const std::string troubles = bus::to_text(report.bus.statistics);
+  if (!troubles.empty()) text += "; " + troubles;
   return text + fmt::format("\n{}", report.result == sequence::RunResult::Done ? "done" : "aborted");
 }
 

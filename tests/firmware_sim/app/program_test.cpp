@@ -76,7 +76,11 @@ TEST(Program, a_controller_listens_to_its_host_and_to_every_node_and_to_no_other
     EXPECT_TRUE(hears(MessageType::Fault, node));
   }
   EXPECT_FALSE(hears(MessageType::Command, 3));
-  EXPECT_FALSE(hears(MessageType::Acknowledge, 2));
+  for (const MessageType own : {MessageType::Force, MessageType::Acknowledge, MessageType::Pneumatics,
+                                MessageType::LayoutStatus, MessageType::Identity}) {
+    EXPECT_TRUE(hears(own, 2)) << "another that speaks under its number is found out";
+    EXPECT_FALSE(hears(own, 3));
+  }
   EXPECT_FALSE(hears(MessageType::TransferResponse, 2));
 }
 

@@ -94,6 +94,13 @@ TEST(SendQueue, is_bounded) {
   EXPECT_FALSE(queue.push(frame_of(1, 0), 0));
 }
 
+TEST(SendQueue, full_of_stale_frames_has_room_for_a_fresh_one) {
+  SendQueue queue;
+  for (std::size_t i = 0; i < SendQueue::kMostFrames; ++i) ASSERT_TRUE(queue.push(frame_of(1, 0), 0));
+  EXPECT_TRUE(queue.push(frame_of(2, 0), SendQueue::kStale_us + 1));
+  EXPECT_EQ(queue.dropped(), SendQueue::kMostFrames);
+}
+
 TEST(SendQueue, reports_a_driver_that_takes_nothing_any_more) {
   SendQueue queue;
   ASSERT_TRUE(queue.push(frame_of(1, 0), 0));

@@ -29,10 +29,11 @@ std::string new_folder() {
   return name;
 }
 
-std::vector<std::string> jaw_command(const std::vector<std::string>& names, const std::string& path) {
+std::vector<std::string> jaw_command(const std::vector<std::string>& names, const std::string& interface,
+                                     const std::string& path) {
   std::vector<std::string> command = {test::program("pinjaw-jaw")};
   for (const std::string& name : names) command.push_back(config("controllers/" + name + ".yaml"));
-  command.insert(command.end(), {"--bus", "can:vcan0", "--world", path});
+  command.insert(command.end(), {"--bus", "can:" + interface, "--world", path});
   return command;
 }
 
@@ -79,8 +80,8 @@ int pinjaw(std::vector<std::string> arguments, const std::string& output) {
   return Process(std::move(arguments), output).wait();
 }
 
-Controllers::Controllers(const std::vector<std::string>& names)
-    : path_(new_folder() + "/world"), program_(jaw_command(names, path_)) {
+Controllers::Controllers(const std::vector<std::string>& names, const std::string& interface)
+    : path_(new_folder() + "/world"), program_(jaw_command(names, interface, path_)) {
   for (int tries = 0; tries < 1000 && !world_; ++tries) {
     if (auto world = bench::SocketWorld::connect(path_)) world_ = std::move(*world);
     std::this_thread::sleep_for(kPoll);

@@ -35,10 +35,10 @@ class Process {
 /// Runs `pinjaw ARGUMENTS --bus can:vcan0` to its end and gives its exit code.
 int pinjaw(std::vector<std::string> arguments, const std::string& output = {});
 
-/// pinjaw-jaw with controllers of configs/controllers, and its world.
+/// pinjaw-jaw with controllers of configs/controllers on an interface, and its world.
 class Controllers {
  public:
-  explicit Controllers(const std::vector<std::string>& names);
+  explicit Controllers(const std::vector<std::string>& names, const std::string& interface = "vcan0");
   Controllers(const Controllers&) = delete;
   Controllers& operator=(const Controllers&) = delete;
   ~Controllers();
