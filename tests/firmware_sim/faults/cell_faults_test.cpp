@@ -329,7 +329,7 @@ class BadLine {
       const bool open = cell.truth_of(to).squeeze_n < 1;
       if (over(to) || (giver == State::Hold && is_free(receiver) && open)) return;
       if (giver == State::Offered) holding_.asks(holder_, wire::plain_command(wire::Op::Abort));
-      if (receiver == State::Seating || receiver == State::Seated || receiver == State::FaultEmpty) {
+      if (receiver != State::Hold && receiver != State::Taken) {
         cell.arm(to);
         holding_.asks(to, wire::plain_command(wire::Op::Abort));
       }

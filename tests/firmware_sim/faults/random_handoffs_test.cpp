@@ -144,10 +144,11 @@ class Relay {
 
   void give_up(std::uint8_t node) {
     switch (bench_.at(node).id()) {
+      case StateId::Loaded:  // its host was lost before its jaws were open
+      case StateId::Ready:
       case StateId::Seating:
       case StateId::Seated:
       case StateId::FaultEmpty:
-      case StateId::Ready:
         arm(node);
         ask(node, wire::plain_command(wire::Op::Abort));
         return;
