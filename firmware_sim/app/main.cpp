@@ -6,6 +6,7 @@
 #include <csignal>
 #include <exception>
 
+#include "firmware_sim/app/board_line.hpp"
 #include "firmware_sim/app/members.hpp"
 #include "firmware_sim/app/options.hpp"
 #include "firmware_sim/app/program.hpp"
@@ -69,6 +70,16 @@ ExitCode simulate(const jaw_app::Options& options) {
     if (!opened) return fail(ExitCode::Unavailable, opened.error().message);
     buses.push_back(std::move(*opened));
   }
+  std::vector<std::unique_ptr<jaw_app::BoardLine>> boards;
+  for (const jaw_app::OuterBoard& board : options.boards) {
+    if (std::ranges::find(*members, board.node, &node::Figures::node) == members->end()) {
+      return fail(ExitCode::Usage,
+                  fmt::format("--board {}=...: no controller file is of node {}", board.node, board.node));
+    }
+    auto line = jaw_app::BoardLine::connect(board.socket);
+    if (!line) return fail(ExitCode::Unavailable, line.error());
+    boards.push_back(std::move(*line));
+  }
   std::unique_ptr<bench::SocketServer> server;
   if (!options.world.empty()) {
     auto listening = bench::SocketServer::listen(options.world);
@@ -76,6 +87,7 @@ ExitCode simulate(const jaw_app::Options& options) {
     server = std::move(*listening);
   }
   jaw_app::Program program(*members, std::move(buses), std::move(server), options);
+  for (std::size_t i = 0; i < boards.size(); ++i) program.hand_to(options.boards[i].node, *boards[i]);
   fmt::print(stderr, "pinjaw-jaw: {}\n", greeting(*members, options));
   program.run(stop_requested);
   return ExitCode::Done;

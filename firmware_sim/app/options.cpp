@@ -64,6 +64,15 @@ tl::expected<TimedFault, std::string> parse_timed_fault(const std::string& text)
   return fault;
 }
 
+tl::expected<OuterBoard, std::string> parse_board(const std::string& text) {
+  const auto equals = text.find('=');
+  const auto node = number<int>(std::string_view(text).substr(0, equals));
+  if (equals == std::string::npos || equals + 1 == text.size() || !node || *node < 1 || *node > 14) {
+    return wrong(fmt::format("--board '{}': expected NODE=SOCKET with a node from 1 to 14", text));
+  }
+  return OuterBoard{.node = *node, .socket = text.substr(equals + 1)};
+}
+
 tl::expected<std::string, std::string> parse_bus(const std::string& text) {
   if (text.starts_with("can:") && text.size() > 4) return text.substr(4);
   if (text.starts_with("sim:")) {
@@ -78,6 +87,7 @@ std::variant<Options, Ended> read_options(int argc, const char* const* argv) {
   Options options;
   std::string bus;
   std::vector<std::string> faults;
+  std::vector<std::string> boards;
   app.set_version_flag("--version", "pinjaw-jaw " PINJAW_VERSION);
   app.footer(kExamples);
   app.add_option("CONTROLLER", options.controllers, "controller files, one a node")->required();
@@ -87,6 +97,9 @@ std::variant<Options, Ended> read_options(int argc, const char* const* argv) {
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   app.add_option("--fault", faults, "NODE:FAULT[=VALUE][@SECONDS]; FAULT is one of " + node::known_faults())
+      ->allow_extra_args(false);
+  app.add_option("--board", boards,
+                 "NODE=SOCKET: a board of its own is the node's controller; SOCKET leads to its serial line")
       ->allow_extra_args(false);
   app.add_flag("--events", options.events, "tell the world's events on stderr");
   try {
@@ -101,6 +114,11 @@ std::variant<Options, Ended> read_options(int argc, const char* const* argv) {
     const auto fault = parse_timed_fault(text);
     if (!fault) return usage(fault.error());
     options.faults.push_back(*fault);
+  }
+  for (const std::string& text : boards) {
+    const auto board = parse_board(text);
+    if (!board) return usage(board.error());
+    options.boards.push_back(*board);
   }
   return options;
 }

@@ -27,12 +27,20 @@ struct TimedFault {
   double at_s = 0;   ///< after the start
 };
 
+/// A node whose firmware runs on a board of its own, and the Unix socket that leads to the board's serial
+/// line.
+struct OuterBoard {
+  int node = 0;
+  std::string socket;
+};
+
 struct Options {
   std::vector<std::filesystem::path> controllers;
   std::string interface;  ///< of Linux's CAN
   std::string world;      ///< path of the Unix socket; empty: the world is not served
   std::uint64_t seed = 1;
   std::vector<TimedFault> faults;
+  std::vector<OuterBoard> boards;
   bool events = false;  ///< the world's events on stderr
 };
 
@@ -46,6 +54,9 @@ std::variant<Options, Ended> read_options(int argc, const char* const* argv);
 
 /// Reads `NODE:FAULT[=VALUE][@SECONDS]`, or gives a sentence on what is wrong.
 tl::expected<TimedFault, std::string> parse_timed_fault(const std::string& text);
+
+/// Reads `NODE=SOCKET`, or gives a sentence on what is wrong.
+tl::expected<OuterBoard, std::string> parse_board(const std::string& text);
 
 /// The interface of `can:IFACE`, or a sentence that says which buses there are.
 tl::expected<std::string, std::string> parse_bus(const std::string& text);

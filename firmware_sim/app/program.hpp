@@ -25,6 +25,9 @@ class Program {
   Program(const std::vector<node::Figures>& members, std::vector<std::unique_ptr<bus::Bus>> buses,
           std::unique_ptr<bench::SocketServer> server, const Options& options);
 
+  /// `board`, which must outlive the program, is the controller of that node. Precondition: there is one.
+  void hand_to(int node, node::ExternalBoard& board) { world_.find(node)->hand_to(board); }
+
   /// Runs until `stop`. Tells on stderr when the bus fails and when it comes back, and, once a second at
   /// most, what was lost and went wrong on it.
   void run(const std::atomic<bool>& stop);

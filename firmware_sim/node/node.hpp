@@ -31,6 +31,19 @@ struct Truth {
   double most_n = 0;   ///< the same
 };
 
+/// A controller outside this process that is wired to a node's sensors and valves and has a bus end of its
+/// own.
+class ExternalBoard {
+ public:
+  ExternalBoard() = default;
+  ExternalBoard(const ExternalBoard&) = delete;
+  ExternalBoard& operator=(const ExternalBoard&) = delete;
+  virtual ~ExternalBoard() = default;
+
+  /// Shows it what the sensors read now; gives what it last told the valves.
+  virtual core::Valves exchange(const core::Sensors& sensors) = 0;
+};
+
 /// One simulated controller: firmware, pneumatics, permanent memory, one end of a bus. Its caller steps it
 /// each millisecond of whatever time it keeps.
 class Node {
@@ -45,6 +58,8 @@ class Node {
   /// Off: the valves fall to rest and the firmware forgets what is not in its memory. On: it starts.
   void set_power(bool on);
   void apply(const Fault& fault);
+  /// From now on `board`, which must outlive the node, decides in place of the node's own firmware.
+  void hand_to(ExternalBoard& board) { board_ = &board; }
 
   [[nodiscard]] int number() const { return figures_.node; }
   [[nodiscard]] const Figures& figures() const { return figures_; }
@@ -74,6 +89,7 @@ class Node {
   core::Config config_;
   plant::Parameters parameters_;
   bus::Bus* bus_;
+  ExternalBoard* board_ = nullptr;
   bool powered_ = true;
   bool coasts_ = true;
   Nvm memory_;  // before the firmware, which reads it

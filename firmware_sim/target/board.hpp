@@ -15,7 +15,7 @@ void start();
 /// What this controller's hardware is: constants, or DIP switches read by start().
 const core::Config& config();
 
-/// What non-volatile memory holds, read once after start(). `image` is one as its default makes it.
+/// What non-volatile memory holds, read once after start(); every member of `image` is set.
 void read_memory(core::NvmImage& image);
 
 /// Sleeps until the next tick; gives the milliseconds since the last call, at least 1.

@@ -7,27 +7,28 @@
 
 namespace pinjaw::firmware {
 
-void boot(Firmware& fresh) {
+void boot(core::State& fresh, Work& work) {
   board::start();
-  board::read_memory(fresh.memory);
-  core::power_on(board::config(), fresh.memory, fresh.state);
+  board::read_memory(work.memory);
+  core::power_on(board::config(), work.memory, fresh);
 }
 
-void turn(Firmware& firmware) {
+void turn(core::State& state, Work& work) {
   const std::uint32_t elapsed_ms = board::wait_for_tick();
+  core::Outputs& outputs = work.outputs;
   std::size_t count = 0;
-  while (count < firmware.received.size() && board::receive(firmware.received[count])) ++count;
+  while (count < work.received.size() && board::receive(work.received[count])) ++count;
   const core::Inputs inputs{.elapsed_ms = elapsed_ms,
-                            .received = std::span<const wire::Frame>(firmware.received).first(count),
+                            .received = std::span<const wire::Frame>(work.received).first(count),
                             .sensors = board::sensors(),
                             .nvm = board::memory_status(),
                             .bus = board::bus_health()};
-  core::step(firmware.state, inputs, firmware.outputs);
-  board::set_valves(firmware.outputs.valves);
-  if (firmware.outputs.nvm) board::store(*firmware.outputs.nvm);
-  for (const wire::Frame& frame : firmware.outputs.send.view()) board::send(frame);
-  if (firmware.outputs.restart_bus) board::restart_bus();
-  board::stepped(firmware.state);
+  core::step(state, inputs, outputs);
+  board::set_valves(outputs.valves);
+  if (outputs.nvm) board::store(*outputs.nvm);
+  for (const wire::Frame& frame : outputs.send.view()) board::send(frame);
+  if (outputs.restart_bus) board::restart_bus();
+  board::stepped(state);
 }
 
 }  // namespace pinjaw::firmware

@@ -11,9 +11,9 @@
 /// image on another processor, and compared byte for byte. Little-endian; structures as they lie in memory,
 /// padding 0.
 ///
-///     inputs   'P' configuration, memory | 'S' elapsed time, sensors ..., number of frames, frames | 'E'
-///     outputs  for each 'S': valves, 'N' write to memory, 'F' frame ..., 'B' bus restart, '.' digest of the
-///     state
+///     inputs   mask of the state's bytes, then 'P' configuration, memory | 'S' elapsed time, sensors ...,
+///     number of frames, frames | 'E' outputs  for each 'S': valves, 'N' write to memory, 'F' frame ..., 'B'
+///     bus restart, '.' digest of the state
 ///
 /// `Sink` takes bytes by `put(std::span<const std::uint8_t>)`.
 namespace pinjaw::trace {
@@ -48,9 +48,14 @@ struct Writer {
 
   void byte(std::uint8_t value) { sink.put(std::span(&value, 1)); }
   template <class T>
-  void raw(T value) {  // a copy, whose padding may be cleared
-    __builtin_clear_padding(&value);
+  void raw(const T& value) {  // of a type without padding
     sink.put(bytes_of(value));
+  }
+  void valves(const core::Valves& valves) {
+    byte(static_cast<std::uint8_t>(valves.spool));
+    raw(valves.close_set_mbar);
+    byte(static_cast<std::uint8_t>((valves.relax ? 1U : 0U) | (valves.pre_vent ? 2U : 0U) |
+                                   (valves.supply_cut ? 4U : 0U)));
   }
   void frame(const wire::Frame& frame) {
     raw(frame.id);
@@ -70,18 +75,20 @@ struct Writer {
   }
 };
 
-/// A number that differs where two states do, all but surely: every byte after the configuration counts.
-/// `scratch` is overwritten.
-inline std::uint32_t digest_of(const core::State& state, core::State& scratch) {
-  scratch = state;
-  __builtin_clear_padding(&scratch);
-  const std::span<const std::uint8_t> bytes = bytes_of(scratch).subspan(offsetof(core::State, id));
-  std::size_t size = bytes.size();
-  while (size > 0 && bytes[size - 1] == 0) --size;  // padding at the end is not alike
-  std::uint32_t hash = 2166136261U;                 // FNV-1a over words
-  for (std::size_t i = 0; i < size; i += 4) {
+/// How many bytes of a state count: all after its configuration.
+inline constexpr std::size_t kStateBytes = sizeof(core::State) - offsetof(core::State, id);
+/// 0xFF for each of these bytes that is part of a value, 0 for padding.
+using StateMask = std::array<std::uint8_t, kStateBytes>;
+
+/// A number that differs where two states do, all but surely (FNV-1a over words).
+inline std::uint32_t digest_of(const core::State& state, const StateMask& mask) {
+  const std::span<const std::uint8_t> bytes = bytes_of(state).subspan(offsetof(core::State, id));
+  std::uint32_t hash = 2166136261U;
+  for (std::size_t i = 0; i < kStateBytes; i += 4) {
     std::uint32_t word = 0;
-    for (std::size_t k = 0; k < 4 && i + k < size; ++k) word |= std::uint32_t{bytes[i + k]} << (8 * k);
+    for (std::size_t k = 0; k < 4 && i + k < kStateBytes; ++k) {
+      word |= std::uint32_t{static_cast<std::uint8_t>(bytes[i + k] & mask[i + k])} << (8 * k);
+    }
     hash = (hash ^ word) * 16777619U;
   }
   return hash;

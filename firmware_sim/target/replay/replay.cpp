@@ -79,7 +79,7 @@ struct Player {
   core::Config config;
   core::Inputs inputs;
   std::size_t frames_left;
-  core::State scratch;
+  trace::StateMask mask;
   std::uint32_t step_began;
 };
 
@@ -157,6 +157,10 @@ void start() {
   systick().reload = kMost;
   systick().value = 0;
   systick().control = 5;  // processor's clock, no interrupt
+  std::uint16_t size = 0;
+  take(trace::bytes_of(size));
+  if (size != player.mask.size()) give_up("the trace is of another state\n");
+  take(player.mask);
   if (take_byte() != trace::kPowerOn) give_up("the trace does not begin with power\n");
 }
 
@@ -167,6 +171,7 @@ const core::Config& config() {
 void read_memory(core::NvmImage& image) {
   player.config = {};
   take(trace::bytes_of(player.config).first(trace::kConfigBytes));
+  image = {};
   if (take_byte() != 0) take(trace::bytes_of(image.record.emplace()));
   image.readable = take_byte() != 0;
   take(trace::bytes_of(image.layout.size));
@@ -213,7 +218,7 @@ void set_valves(const core::Valves& valves) {
   ++player.steps;
   if (player.frames_left != 0) give_up("more frames in a step than the firmware takes\n");
   Out out;
-  trace::Writer<Out>{out}.raw(valves);
+  trace::Writer<Out>{out}.valves(valves);
 }
 
 void store(const core::NvmWrite& write) {
@@ -236,7 +241,7 @@ void restart_bus() {
 void stepped(const core::State& state) {
   Out out;
   trace::Writer<Out>{out}.byte('.');
-  trace::Writer<Out>{out}.raw(trace::digest_of(state, player.scratch));
+  trace::Writer<Out>{out}.raw(trace::digest_of(state, player.mask));
 }
 
 }  // namespace pinjaw::board

@@ -4,6 +4,7 @@
 
 #include "firmware_sim/core/authentication.hpp"
 #include "protocol/wire/seal.hpp"
+#include "tests/firmware_sim/core/recorder.hpp"
 
 namespace pinjaw::core::test {
 namespace {
@@ -61,7 +62,7 @@ Station::Station(std::uint8_t node) {
   config.passive = node == kPallet;
   if (config.passive) config.seat_switches = 7;
   jaw.passive = config.passive;
-  core = power_on(config, memory);
+  power_on_again();
 }
 
 void Station::power_off() {
@@ -73,12 +74,17 @@ void Station::power_on_again() {
   powered = true;
   stored = {};
   core = power_on(config, memory);
+  if (Recorder* recorder = Recorder::wanted()) recorder->power_on(config, memory, core);
 }
 
 void Station::step(const std::vector<wire::Frame>& frames) {
   if (!powered) return jaw.step(Valves{});
   const std::vector<wire::Frame> received = bus.off ? std::vector<wire::Frame>{} : frames;
-  outputs = core::step(core, {.received = received, .sensors = jaw.read(), .nvm = stored, .bus = bus});
+  const Inputs inputs{.received = received, .sensors = jaw.read(), .nvm = stored, .bus = bus};
+  Recorder* recorder = Recorder::wanted();
+  if (recorder != nullptr) recorder->before(core);
+  outputs = core::step(core, inputs);
+  if (recorder != nullptr) recorder->after(inputs, outputs, core);
   if (bus.off) outputs.send.size = 0;
   if (outputs.nvm) {
     if (memory_fails) {
