@@ -18,11 +18,12 @@ void turn(core::State& state, Work& work) {
   core::Outputs& outputs = work.outputs;
   std::size_t count = 0;
   while (count < work.received.size() && board::receive(work.received[count])) ++count;
-  const core::Inputs inputs{.elapsed_ms = elapsed_ms,
-                            .received = std::span<const wire::Frame>(work.received).first(count),
-                            .sensors = board::sensors(),
-                            .nvm = board::memory_status(),
-                            .bus = board::bus_health()};
+  core::Inputs& inputs = work.inputs;
+  inputs.elapsed_ms = elapsed_ms;
+  inputs.received = std::span<const wire::Frame>(work.received).first(count);
+  inputs.sensors = board::sensors();
+  inputs.nvm = board::memory_status();
+  inputs.bus = board::bus_health();
   core::step(state, inputs, outputs);
   board::set_valves(outputs.valves);
   if (outputs.nvm) board::store(*outputs.nvm);

@@ -11,6 +11,7 @@ inline constexpr std::size_t kReceivedPerStep = 16;  ///< four times what 1 ms o
 
 /// What a controller works with besides its state.
 struct Work {
+  core::Inputs inputs;
   core::Outputs outputs;
   core::NvmImage memory;                                 ///< read once; the core keeps what it needs of it
   std::array<wire::Frame, kReceivedPerStep> received{};  ///< in one step

@@ -78,8 +78,8 @@ constexpr void mix_columns(AesBlock& block) {
 
 }  // namespace detail
 
-/// `block` encrypted with `key`.
-constexpr AesBlock aes128(Key key, AesBlock block) {
+/// Encrypts `block` with `key`, in place.
+constexpr void encrypt(Key key, AesBlock& block) {
   constexpr int kRounds = 10;
   std::uint8_t round_constant = 1;
   detail::add_key(block, key);
@@ -90,6 +90,11 @@ constexpr AesBlock aes128(Key key, AesBlock block) {
     round_constant = detail::doubled(round_constant);
     detail::add_key(block, key);
   }
+}
+
+/// `block` encrypted with `key`.
+constexpr AesBlock aes128(const Key& key, AesBlock block) {
+  encrypt(key, block);
   return block;
 }
 

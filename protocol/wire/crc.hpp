@@ -9,21 +9,22 @@ namespace pinjaw::wire {
 
 namespace detail {
 
-constexpr std::array<std::uint8_t, 256> crc8_table() {
-  std::array<std::uint8_t, 256> table{};
+// Tables of half bytes: 80 bytes of a controller's flash instead of 1280, at twice the look-ups.
+constexpr std::array<std::uint8_t, 16> crc8_table() {
+  std::array<std::uint8_t, 16> table{};
   for (unsigned i = 0; i < table.size(); ++i) {
-    unsigned crc = i;
-    for (int bit = 0; bit < 8; ++bit) crc = (crc & 0x80U) != 0 ? (crc << 1) ^ 0x2FU : crc << 1;
+    unsigned crc = i << 4;
+    for (int bit = 0; bit < 4; ++bit) crc = (crc & 0x80U) != 0 ? (crc << 1) ^ 0x2FU : crc << 1;
     table[i] = static_cast<std::uint8_t>(crc);
   }
   return table;
 }
 
-constexpr std::array<std::uint32_t, 256> crc32_table() {
-  std::array<std::uint32_t, 256> table{};
+constexpr std::array<std::uint32_t, 16> crc32_table() {
+  std::array<std::uint32_t, 16> table{};
   for (std::uint32_t i = 0; i < table.size(); ++i) {
     std::uint32_t crc = i;
-    for (int bit = 0; bit < 8; ++bit) crc = (crc & 1U) != 0 ? (crc >> 1) ^ 0xEDB88320U : crc >> 1;
+    for (int bit = 0; bit < 4; ++bit) crc = (crc & 1U) != 0 ? (crc >> 1) ^ 0xEDB88320U : crc >> 1;
     table[i] = crc;
   }
   return table;
@@ -38,7 +39,11 @@ inline constexpr auto kCrc32Table = crc32_table();
 /// finds every error of one to three bits in a frame; SAE J1850's 0x1D misses 198 patterns of three bits.
 class Crc8 {
  public:
-  constexpr void add(std::uint8_t byte) { crc_ = detail::kCrc8Table[crc_ ^ byte]; }
+  constexpr void add(std::uint8_t byte) {
+    unsigned crc = crc_ ^ unsigned { byte };
+    crc = detail::kCrc8Table[crc >> 4] ^ (crc << 4 & 0xFFU);
+    crc_ = static_cast<std::uint8_t>(detail::kCrc8Table[crc >> 4] ^ (crc << 4));
+  }
   [[nodiscard]] constexpr std::uint8_t value() const { return crc_ ^ 0xFFU; }
 
  private:
@@ -63,7 +68,11 @@ class Crc16 {
 /// CRC-32 of Ethernet and zip (ISO 3309).
 class Crc32 {
  public:
-  constexpr void add(std::uint8_t byte) { crc_ = detail::kCrc32Table[(crc_ ^ byte) & 0xFFU] ^ (crc_ >> 8); }
+  constexpr void add(std::uint8_t byte) {
+    crc_ ^= byte;
+    crc_ = detail::kCrc32Table[crc_ & 0xFU] ^ (crc_ >> 4);
+    crc_ = detail::kCrc32Table[crc_ & 0xFU] ^ (crc_ >> 4);
+  }
   [[nodiscard]] constexpr std::uint32_t value() const { return crc_ ^ 0xFFFFFFFFU; }
 
  private:

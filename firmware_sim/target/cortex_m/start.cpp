@@ -1,4 +1,5 @@
 // Reset and vector table of any Cortex-M. Symbols of memory come from image.ld.
+#include <cstddef>
 #include <cstdint>
 
 extern "C" {
@@ -33,4 +34,28 @@ extern std::uint32_t image_bss_end;
     reinterpret_cast<std::uintptr_t>(&fault_handler),   reinterpret_cast<std::uintptr_t>(&fault_handler),
     reinterpret_cast<std::uintptr_t>(&fault_handler),
 };
+}
+
+// What the compiler calls by itself, small instead of fast: the C library's take 700 B.
+extern "C" {
+void* memset(void* to, int value, std::size_t size) {
+  auto* bytes = static_cast<unsigned char*>(to);
+  for (std::size_t i = 0; i < size; ++i) bytes[i] = static_cast<unsigned char>(value);
+  return to;
+}
+
+void* memmove(void* to, const void* from, std::size_t size) {
+  auto* out = static_cast<unsigned char*>(to);
+  const auto* in = static_cast<const unsigned char*>(from);
+  if (out <= in) {
+    for (std::size_t i = 0; i < size; ++i) out[i] = in[i];
+  } else {
+    while (size-- > 0) out[size] = in[size];
+  }
+  return to;
+}
+
+void* memcpy(void* to, const void* from, std::size_t size) {
+  return memmove(to, from, size);
+}
 }
