@@ -65,8 +65,8 @@ ExitCode simulate(const jaw_app::Options& options) {
   }
   std::vector<std::unique_ptr<bus::Bus>> buses;
   for (const node::Figures& member : *members) {
-    auto opened = socketcan::LastingBus::open(options.interface,
-                                              {.filters = jaw_app::filters_of(member.node), .patient = true});
+    auto opened = socketcan::LastingBus::open(
+        options.interface, {.filters = jaw_app::filters_of(member.node, member.can_fd), .patient = true});
     if (!opened) return fail(ExitCode::Unavailable, opened.error().message);
     buses.push_back(std::move(*opened));
   }

@@ -21,6 +21,7 @@ node::Figures figures_of(const model::Controller& controller) {
           .force_uncertainty_n = controller.force_uncertainty_n,
           .separation_min_mm = controller.kit.jaws.separation_mm.lo,
           .separation_max_mm = controller.kit.jaws.separation_mm.hi,
+          .can_fd = controller.authentication && controller.authentication->can_fd,
           .key = key,
           .plant = {.supply_bar = plant.supply_bar,
                     .supply_droop_bar = plant.supply_droop_bar,

@@ -8,6 +8,7 @@
 #include "firmware_sim/app/pace.hpp"
 #include "protocol/bus/statistics.hpp"
 #include "protocol/wire/codec.hpp"
+#include "protocol/wire/secured_link.hpp"
 
 namespace pinjaw::jaw_app {
 namespace {
@@ -42,7 +43,7 @@ std::vector<world::Member> join(const std::vector<node::Figures>& members,
 
 }  // namespace
 
-std::vector<bus::Filter> filters_of(int node) {
+std::vector<bus::Filter> filters_of(int node, bool can_fd) {
   using wire::MessageType;
   constexpr std::uint32_t kOne = 0x7FF;
   constexpr std::uint32_t kAllNodes = 0x7F0;
@@ -51,6 +52,7 @@ std::vector<bus::Filter> filters_of(int node) {
        {MessageType::GlobalHold, MessageType::Fault, MessageType::Custody, MessageType::State}) {
     filters.push_back({wire::id_of({type, 0}), kAllNodes});
   }
+  if (can_fd) filters.push_back({wire::kSynchronisationId, kAllNodes});
   filters.push_back({wire::id_of({MessageType::HostHeartbeat, 0}), kOne});
   const auto own = static_cast<std::uint8_t>(node);
   for (const MessageType type : {MessageType::Command, MessageType::TransferRequest}) {

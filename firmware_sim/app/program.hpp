@@ -15,7 +15,7 @@
 namespace pinjaw::jaw_app {
 
 /// Filters for what a controller listens to, so that its receive buffer is not filled by the rest.
-std::vector<bus::Filter> filters_of(int node);
+std::vector<bus::Filter> filters_of(int node, bool can_fd = false);
 
 /// The cell in real time: one world stepped each millisecond of CLOCK_MONOTONIC, its socket served in
 /// between.

@@ -13,6 +13,16 @@ using wire::CommandResult;
 using wire::Op;
 using wire::Reason;
 
+constexpr Answer kWrongMac{CommandResult::BadSession, Reason::Authentication};
+constexpr Answer kLockedOut{CommandResult::Refused, Reason::LockedOut};
+constexpr std::uint32_t kFrameBlock = 16;  // chosen: 2^20 frames, an hour of a busy node, for one store
+
+/// The next block, where there is one: at the end the controller falls silent.
+void take_block(NvmRecord& record) {
+  constexpr std::uint32_t kLast = std::numeric_limits<std::uint32_t>::max() - kFrameBlock;
+  if (record.frame_block < kLast) record.frame_block += kFrameBlock;
+}
+
 /// Why an ARM is turned away before anybody looks at its MAC; it would be refused with a right one, too, and
 /// a host that waits for another one to fall silent must not be locked out.
 std::optional<Answer> not_judged(const State& state) {
@@ -33,7 +43,7 @@ Answer missed(State& state) {
   } else {
     state.faults.note(wire::FaultCode::Authentication);
   }
-  return {CommandResult::BadSession, Reason::Authentication};
+  return kWrongMac;
 }
 
 }  // namespace
@@ -51,40 +61,51 @@ bool numbers_are_left(const State& state) {
 std::optional<wire::Acknowledge> answer_question(const State& state, const wire::Command& said) {
   const auto step = static_cast<wire::ArmStep>(said.argument);
   if (said.op != Op::Arm || step == wire::ArmStep::Open) return std::nullopt;
-  wire::Acknowledge answer{.sequence = said.sequence,
-                           .op = said.op,
-                           .result = CommandResult::Refused,
-                           .session = state.gate.session(),
-                           .reason = Reason::BadArgument,
-                           .state = state.id,
-                           .next_sequence = state.gate.next_sequence()};
-  if (!state.config.key || step > wire::ArmStep::Proof) return answer;
-  if (state.lock_out.locked()) {
-    answer.reason = Reason::LockedOut;
-    return answer;
+  if (!state.config.key || step > wire::ArmStep::Proof) {
+    return acknowledgement(state, said, {CommandResult::Refused, Reason::BadArgument});
   }
-  answer.result = CommandResult::BadSession;
-  answer.reason = Reason::Authentication;
+  if (state.lock_out.locked()) return acknowledgement(state, said, kLockedOut);
+  wire::Acknowledge answer = acknowledgement(state, said, kWrongMac);
   answer.session = wire::number_answer(*state.config.key, state.config.node, step, next_session_number(state),
                                        wire::nonce_of(said));
   return answer;
 }
 
-wire::Result<wire::Command, Answer> unsealed(State& state, const wire::Command& said) {
-  if (!state.config.key || said.op == Op::Hold) return said;
-  if (state.lock_out.locked()) return Answer{CommandResult::Refused, Reason::LockedOut};
-  wire::Command command = said;
+std::optional<Answer> unseal(State& state, wire::Command& command) {
+  if (!state.config.key || command.op == Op::Hold) return std::nullopt;
+  if (state.lock_out.locked()) return kLockedOut;
   wire::Freshness freshness{.number = state.next_session, .epoch = state.session_epoch};
-  if (said.op == Op::Arm) {
-    if (const auto answer = not_judged(state)) return *answer;
+  if (command.op == Op::Arm) {
+    if (const auto answer = not_judged(state)) return answer;
     freshness = {.number = next_session_number(state), .epoch = state.host.epoch()};
-    command.session = state.host.epoch();
-  } else {
-    if (!state.gate.armed()) return Answer{CommandResult::BadSession, Reason::NotArmed};
-    command.session = state.gate.session();
+  } else if (!state.gate.armed()) {
+    return Answer{CommandResult::BadSession, Reason::NotArmed};
   }
-  if (!wire::seal_is_right(*state.config.key, state.config.node, said, freshness)) return missed(state);
-  return command;
+  if (!wire::seal_is_right(*state.config.key, state.config.node, command, freshness)) return missed(state);
+  command.session = command.op == Op::Arm ? state.host.epoch() : state.gate.session();
+  return std::nullopt;
+}
+
+void start_link(State& state, NvmRecord& record) {
+  if (!on_can_fd(state.config)) return;
+  state.link = {state.config.node, (wire::FrameNumber{record.frame_block} << 16) + 1};
+  take_block(record);
+}
+
+void keep_link(State& state) {
+  if (!on_can_fd(state.config)) return;
+  std::uint16_t sources = 1U << wire::kHostNode;
+  if (state.layouts.committed) {
+    for (const wire::LayoutPeer& peer : state.layouts.layout.used_peers())
+      sources |= static_cast<std::uint16_t>(1U << peer.node);
+  }
+  state.link.follow(sources);
+  if (state.link.take_alarm()) state.faults.note(wire::FaultCode::Authentication);
+  if (!state.store.durable() || !state.store.readable) return;
+  state.frame_block = state.store.record.frame_block;
+  if (static_cast<std::uint32_t>(state.link.next_number() >> 16) + 2 < state.frame_block) return;
+  take_block(state.store.record);
+  state.store.record_waits = state.store.record.frame_block != state.frame_block;
 }
 
 void advance_lock_out(State& state, std::uint16_t elapsed_ms) {

@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "protocol/wire/messages.hpp"
-#include "protocol/wire/result.hpp"
 #include "protocol/wire/timing.hpp"
 
 /// Whether whoever commands knows the key (docs/authentication.md). Without a key in the configuration every
@@ -12,6 +11,7 @@
 namespace pinjaw::core {
 
 struct Answer;
+struct NvmRecord;
 struct State;
 
 /// Counts commands with a wrong MAC. At the third within a minute nothing is judged any more until a minute
@@ -47,9 +47,15 @@ bool numbers_are_left(const State& state);
 /// The answer to an ARM that asks for what a MAC covers; nothing where `said` does not ask. It opens nothing.
 std::optional<wire::Acknowledge> answer_question(const State& state, const wire::Command& said);
 
-/// `said` as a host without a key would have said it, where its MAC is right or none is needed; else why it
-/// is turned away. A wrong MAC counts, and the last that may be wrong ends the session.
-wire::Result<wire::Command, Answer> unsealed(State& state, const wire::Command& said);
+/// Makes of a command with the right MAC what a host without a key would have said; else tells why it is
+/// turned away. Of a wrong MAC one is counted, and the last that may be wrong ends the session.
+std::optional<Answer> unseal(State& state, wire::Command& command);
+
+/// Begins the link of a controller on CAN FD with a block of frame numbers that no earlier start was given.
+void start_link(State& state, NvmRecord& record);
+
+/// Lets the link hear hosts and the layout's peers, and has the next block of frame numbers stored in time.
+void keep_link(State& state);
 
 /// Lets time pass: a lock-out ends.
 void advance_lock_out(State& state, std::uint16_t elapsed_ms);

@@ -5,7 +5,6 @@
 #include "firmware_sim/core/custody.hpp"
 #include "firmware_sim/core/transitions.hpp"
 #include "protocol/wire/commands.hpp"
-#include "protocol/wire/result.hpp"
 
 namespace pinjaw::core {
 namespace {
@@ -30,16 +29,6 @@ std::optional<Answer> turned_away(Admission admission) {
     default:
       return std::nullopt;
   }
-}
-
-wire::Acknowledge acknowledgement(const State& state, const wire::Command& command, const Answer& answer) {
-  return {.sequence = command.sequence,
-          .op = command.op,
-          .result = answer.result,
-          .session = state.gate.session(),
-          .reason = answer.reason,
-          .state = state.id,
-          .next_sequence = state.gate.next_sequence()};
 }
 
 /// Sessions are handed out from blocks that were stored before, so that none comes twice after a power cut:
@@ -109,12 +98,21 @@ void take_up(State& state, const wire::Command& command) {
 
 }  // namespace
 
+wire::Acknowledge acknowledgement(const State& state, const wire::Command& command, const Answer& answer) {
+  return {.sequence = command.sequence,
+          .op = command.op,
+          .result = answer.result,
+          .session = state.gate.session(),
+          .reason = answer.reason,
+          .state = state.id,
+          .next_sequence = state.gate.next_sequence()};
+}
+
 wire::Acknowledge obey(State& state, const wire::Command& said) {
   if (state.gate.admit(said) == Admission::Repeated) return state.gate.last_answer();
   if (const auto answer = answer_question(state, said)) return *answer;
-  const wire::Result<wire::Command, Answer> proven = unsealed(state, said);
-  if (!proven) return acknowledgement(state, said, proven.error());
-  const wire::Command& command = *proven;
+  wire::Command command = said;
+  if (const auto away = unseal(state, command)) return acknowledgement(state, said, *away);
   const Admission admission = state.gate.admit(command);
   Answer answer;
   if (const std::optional<Answer> away = turned_away(admission)) {

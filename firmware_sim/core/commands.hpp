@@ -22,6 +22,9 @@ struct Decision {
 /// Judges a command whose session and sequence are right. Changes nothing.
 Decision decide(const State& state, const wire::Command& command);
 
+/// How `command` is answered; nothing was done.
+wire::Acknowledge acknowledgement(const State& state, const wire::Command& command, const Answer& answer);
+
 /// Judges and carries out a command, and gives its acknowledgement; a repeat of the last command gets the
 /// same one and does nothing. With a key, a command without the right MAC goes no further than that.
 wire::Acknowledge obey(State& state, const wire::Command& said);

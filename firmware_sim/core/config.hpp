@@ -6,6 +6,11 @@
 #include "firmware_sim/core/state_table.hpp"
 #include "protocol/wire/aes.hpp"
 
+// An image for a microcontroller without CAN FD leaves it out by 0: some 3 KiB of flash.
+#ifndef PINJAW_CAN_FD
+#define PINJAW_CAN_FD 1
+#endif
+
 namespace pinjaw::core {
 
 /// What one controller's hardware is and can do, in the integers the core decides with. It never changes
@@ -37,6 +42,7 @@ struct Config {
   std::uint32_t serial = 0;
 
   std::optional<wire::Key> key{};  ///< shared with hosts: commands must prove that they know it
+  bool can_fd = false;  ///< with a key: a MAC in every frame; classic frames but HOLD are not heard
 
   std::int32_t ramp_dn_per_ms = 5;  ///< section 3: at most 0.5 N/ms
   std::int32_t hold_band_dn = 10;   ///< chosen: half the dead band while holding, several times sensor noise
@@ -50,5 +56,10 @@ struct Config {
   /// whatever the size of a pointer.
   const StateTable* table = &kStateTable;
 };
+
+/// Every frame is one of CAN FD with a MAC.
+constexpr bool on_can_fd(const Config& config) {
+  return PINJAW_CAN_FD != 0 && config.can_fd && config.key;
+}
 
 }  // namespace pinjaw::core

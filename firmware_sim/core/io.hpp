@@ -64,6 +64,7 @@ struct NvmRecord {
   std::uint16_t force_set_dn = 0;    ///< with which the part is held
   std::uint16_t permit_dn = 0;       ///< F_permit when it was taken
   std::uint32_t session_block = 0;   ///< sessions up to here have been given out
+  std::uint32_t frame_block = 0;     ///< upper 32 bits of frame numbers: those below have been given out
   std::uint16_t boot_count = 0;
   std::uint16_t seen_givers = 0;               ///< bit n: a token of node n was accepted before
   std::array<std::uint16_t, 16> last_token{};  ///< the last one of each giver (R8)

@@ -26,6 +26,7 @@ void each_member(Record& record, Visitor visit) {
   visit(record.force_set_dn);
   visit(record.permit_dn);
   visit(record.session_block);
+  visit(record.frame_block);
   visit(record.boot_count);
   visit(record.seen_givers);
   for (auto& token : record.last_token) visit(token);

@@ -16,7 +16,7 @@
 /// decay.
 namespace pinjaw::core {
 
-inline constexpr std::size_t kRecordBytes = 76;
+inline constexpr std::size_t kRecordBytes = 80;
 inline constexpr std::size_t kSlotOverhead = 12;  ///< magic, sequence, checksum, 4 bytes each
 inline constexpr std::size_t kLayoutBytes = 258;  ///< size, then the layout's own bytes
 inline constexpr std::uint8_t kBlank = 0xFF;

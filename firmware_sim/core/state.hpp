@@ -16,6 +16,7 @@
 #include "firmware_sim/core/state_table.hpp"
 #include "protocol/wire/layout.hpp"
 #include "protocol/wire/messages.hpp"
+#include "protocol/wire/secured_link.hpp"
 #include "protocol/wire/session.hpp"
 #include "protocol/wire/timing.hpp"
 #include "protocol/wire/transfer.hpp"
@@ -133,6 +134,8 @@ struct State {
   HostLink host;
   wire::CommandGate gate;
   LockOut lock_out;
+  wire::SecuredLink<1 + wire::kMaxPeers> link{0, 0};  ///< to host and peers; in use with Config::can_fd
+  std::uint32_t frame_block = 0;  ///< frame numbers whose upper 32 bits are below it are stored as given out
   Peers peers;
   Receiving receiving;
   Faults faults;

@@ -57,11 +57,36 @@ struct Listener {
   }
 };
 
+Release release_of(const State& state) {
+  const NvmRecord& record = state.store.record;
+  const wire::LayoutPeer* peer = state.layouts.committed ? state.layouts.layout.peer(record.peer) : nullptr;
+  return {.peer = record.peer,
+          .token = record.token,
+          .pair = record.pair,
+          .peer_required_dn = peer == nullptr ? std::uint16_t{0} : peer->f_required_dn,
+          .decided = record.custody == Custody::Decided};
+}
+
 void listen(State& state, const Inputs& inputs, SendQueue& queue) {
   const Listener listener{state, queue};
   for (const wire::Frame& frame : inputs.received) {
-    if (wire::dispatch(frame, listener)) ++state.counters.bad_frames;
+    if (on_can_fd(state.config)) {
+      const std::optional<wire::Frame> opened = state.link.open(*state.config.key, frame);
+      if (!opened) continue;
+      watch(state.release_guard, state.config, release_of(state), std::span(&*opened, 1),
+            inputs.sensors.local_enable, 0);
+      if (wire::dispatch(*opened, listener)) ++state.counters.bad_frames;
+    } else if (wire::dispatch(frame, listener)) {
+      ++state.counters.bad_frames;
+    }
   }
+}
+
+/// What the link says for itself.
+void speak(State& state, std::uint16_t elapsed_ms, SendQueue& queue) {
+  if (!on_can_fd(state.config) || !has_frame_number(state)) return;
+  const std::optional<wire::Frame> frame = state.link.speak(*state.config.key, elapsed_ms);
+  if (frame && queue.size < SendQueue::kCapacity) queue.frames[queue.size++] = *frame;
 }
 
 void let_time_pass(State& state, std::uint16_t elapsed_ms) {
@@ -77,16 +102,6 @@ void react(State& state) {
     const std::optional<Event> event = next_event(state);
     if (!event || !apply(state, *event)) return;
   }
-}
-
-Release release_of(const State& state) {
-  const NvmRecord& record = state.store.record;
-  const wire::LayoutPeer* peer = state.layouts.committed ? state.layouts.layout.peer(record.peer) : nullptr;
-  return {.peer = record.peer,
-          .token = record.token,
-          .pair = record.pair,
-          .peer_required_dn = peer == nullptr ? std::uint16_t{0} : peer->f_required_dn,
-          .decided = record.custody == Custody::Decided};
 }
 
 void mind_bus(State& state, const BusHealth& health, std::uint16_t elapsed_ms) {
@@ -135,6 +150,7 @@ void power_on(const Config& config, const NvmImage& image, State& state) {
     state.receiving = {.giver = record.peer, .token = record.token, .pair = record.pair};
   }
   state.release_guard = guard_after_reset(record);
+  start_link(state, record);
   if (image.readable) {
     restore_layout(state, image.layout);
     save(state.store, record);
@@ -155,11 +171,14 @@ void step(State& state, const Inputs& inputs, Outputs& outputs) {
   ++state.counters.steps;
   let_time_pass(state, elapsed_ms);
   acknowledge(state.store, inputs.nvm);
+  keep_link(state);
   observe(state.config, inputs.sensors, elapsed_ms, state.measurement);
-  watch(state.release_guard, state.config, release_of(state), inputs.received, inputs.sensors.local_enable,
-        elapsed_ms);
+  // on CAN FD the guard sees each frame once its MAC was found right
+  const auto raw = on_can_fd(state.config) ? std::span<const wire::Frame>{} : inputs.received;
+  watch(state.release_guard, state.config, release_of(state), raw, inputs.sensors.local_enable, elapsed_ms);
   mind_bus(state, inputs.bus, elapsed_ms);
   listen(state, inputs, outputs.send);
+  speak(state, elapsed_ms, outputs.send);
   track(state, elapsed_ms);
   react(state);
   announce(state);

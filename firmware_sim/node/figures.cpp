@@ -49,6 +49,7 @@ core::Config core_config(const Figures& figures) {
   config.passive = figures.passive;
   config.kit_id = figures.kit_id;
   config.key = figures.key;
+  config.can_fd = figures.can_fd;
   config.seat_switches = figures.passive ? kSeatSwitches : std::uint8_t{0};
   config.separation_min_10um = whole(figures.separation_min_mm * 100);
   config.separation_max_10um = whole(figures.separation_max_mm * 100);

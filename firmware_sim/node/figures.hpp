@@ -35,6 +35,7 @@ struct Figures {
   double force_uncertainty_n = 12;  ///< of force inferred from pressure
   double separation_min_mm = 0;
   double separation_max_mm = 60;
+  bool can_fd = false;             ///< with a key: CAN FD, a MAC in every frame
   std::optional<wire::Key> key{};  ///< shared with hosts; nothing: whoever is on the bus may command
   PlantFigures plant{};
 };

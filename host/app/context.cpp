@@ -167,13 +167,19 @@ std::optional<jaw_client::Client::Settings> Context::host_settings(
       .nonces = std::uint64_t{random()} << 32 | random(),
   };
   if (fallback) settings.key = fallback->key;
-  if (key_file.empty()) return settings;
-  const auto key = config::read_key_file(key_file);
-  if (!key) {
-    fail(ExitCode::BadFile, key.error().message);
+  settings.can_fd = can_fd || (fallback && fallback->can_fd);
+  if (!key_file.empty()) {
+    const auto key = config::read_key_file(key_file);
+    if (!key) {
+      fail(ExitCode::BadFile, key.error().message);
+      return std::nullopt;
+    }
+    settings.key = *key;
+  }
+  if (settings.can_fd && !settings.key) {
+    fail(ExitCode::Usage, "--can-fd needs a key: name its file with --key-file");
     return std::nullopt;
   }
-  settings.key = *key;
   return settings;
 }
 

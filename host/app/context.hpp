@@ -28,6 +28,7 @@ class Context {
   std::string bus = "sim:";
   std::string world;
   std::string key_file;
+  bool can_fd = false;
   bool json = false;
   bool quiet = false;
   ProgressMode progress = ProgressMode::Auto;

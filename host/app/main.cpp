@@ -38,6 +38,7 @@ void add_globals(CLI::App& app, Context& context) {
       ->envname("PINJAW_KEY_FILE")
       ->type_name("FILE")
       ->check(pinjaw::app::file_name());
+  app.add_flag("--can-fd", context.can_fd, "with a key: CAN FD, and a MAC in every frame");
   app.add_flag("--json", context.json, "the result on stdout as JSON");
   app.add_flag("--quiet", context.quiet, "no remarks and no progress on stderr");
   pinjaw::app::add_choice<ProgressMode>(

@@ -13,12 +13,13 @@ namespace {
 
 constexpr std::int64_t kTick_us = 1000;
 
-node::Figures figures_of(const model::Station& station, const std::optional<wire::Key>& key) {
+node::Figures figures_of(const model::Station& station, const std::optional<model::Authentication>& key) {
   const model::Kit& kit = station.task.kit;
   node::Figures figures;
   figures.node = station.node;
   figures.passive = !station.grips;
-  figures.key = key;
+  if (key) figures.key = key->key;
+  figures.can_fd = key && key->can_fd;
   figures.kit_id = wire::kit_id_of(std::span(kit.sha256));
   figures.max_squeeze_n = kit.actuator.max_squeeze_n;
   figures.force_uncertainty_n = kit.actuator.force_uncertainty_n;
@@ -29,7 +30,7 @@ node::Figures figures_of(const model::Station& station, const std::optional<wire
 
 class SimVenue final : public Venue {
  public:
-  SimVenue(const model::Cell& cell, std::uint64_t seed, const std::optional<wire::Key>& key)
+  SimVenue(const model::Cell& cell, std::uint64_t seed, const std::optional<model::Authentication>& key)
       : wire_({.seed = seed}),
         host_end_(wire_.open()),
         ends_(open_ends(cell)),
@@ -68,7 +69,7 @@ class SimVenue final : public Venue {
     return ends;
   }
   [[nodiscard]] std::vector<world::Member> members(const model::Cell& cell,
-                                                   const std::optional<wire::Key>& key) const {
+                                                   const std::optional<model::Authentication>& key) const {
     std::vector<world::Member> members;
     for (std::size_t i = 0; i < cell.stations.size(); ++i) {
       members.push_back({figures_of(cell.stations[i], key), ends_[i].get()});
@@ -88,8 +89,8 @@ class SimVenue final : public Venue {
 }  // namespace
 
 std::unique_ptr<Venue> open_sim_venue(const model::Cell& cell, std::uint64_t seed,
-                                      const std::optional<wire::Key>& key) {
-  const auto of_cell = cell.authentication ? std::optional<wire::Key>(cell.authentication->key) : key;
+                                      const std::optional<model::Authentication>& key) {
+  const auto& of_cell = cell.authentication ? cell.authentication : key;
   return std::make_unique<SimVenue>(cell, seed, of_cell);
 }
 

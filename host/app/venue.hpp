@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "host/base/expected.hpp"
+#include "host/model/authentication.hpp"
 #include "host/model/cell.hpp"
 #include "protocol/bench/bench.hpp"
 #include "protocol/bus/bus.hpp"
-#include "protocol/wire/aes.hpp"
 
 namespace pinjaw::app {
 
@@ -40,7 +40,7 @@ class Venue {
 /// An in-process bus in virtual time with a simulated controller for each station of `cell`. They ask for the
 /// cell's key, else for `key`.
 std::unique_ptr<Venue> open_sim_venue(const model::Cell& cell, std::uint64_t seed,
-                                      const std::optional<wire::Key>& key);
+                                      const std::optional<model::Authentication>& key);
 
 /// A CAN interface of this machine, and the world served at `world_path` (none where it is empty). Fails with
 /// a sentence that tells the way out.

@@ -82,6 +82,10 @@ std::optional<model::Authentication> read_authentication(const base::YamlValue& 
       }
     }
   }
+  if (const auto can_fd = map.find("can_fd")) {
+    const bool wanted = can_fd->truth().value_or(false);
+    if (authentication) authentication->can_fd = wanted;
+  }
   map.finish();
   return authentication;
 }

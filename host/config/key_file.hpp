@@ -15,7 +15,7 @@ namespace pinjaw::config {
 /// that others than its owner's group can read or write is refused; no failure tells what a file holds.
 base::Expected<std::array<std::uint8_t, 16>> read_key_file(const std::filesystem::path& path);
 
-/// `authentication: {key_file: FILE}` of a controller or a cell.
+/// `authentication: {key_file: FILE, can_fd: true}` of a controller or a cell.
 std::optional<model::Authentication> read_authentication(const base::YamlValue& value);
 
 }  // namespace pinjaw::config

@@ -6,6 +6,7 @@
 #include "host/jaw_client/command_channel.hpp"
 #include "host/jaw_client/operation.hpp"
 #include "protocol/wire/dispatch.hpp"
+#include "protocol/wire/secured_link.hpp"
 
 namespace pinjaw::jaw_client {
 
@@ -42,12 +43,19 @@ struct Cycle {
   }
 };
 
+/// Another part of the numbers for each start of a host, which has no memory of its last.
+wire::FrameNumber first_number(std::uint64_t drawn) {
+  constexpr std::uint32_t kHalf = 0x7FFFFFFF;  // leaves the upper half to count on
+  return (wire::FrameNumber{drawn ^ drawn >> 32} & kHalf) << 16 | 1U;
+}
+
 }  // namespace
 
 class Client::Implementation {
  public:
   Implementation(bus::Bus& bus, Settings settings) : bus_(bus), settings_(settings) {
     if (!settings.key) return;
+    if (settings.can_fd) link_.emplace(wire::kHostNode, first_number(settings.nonces));
     for (std::uint8_t node = wire::kFirstNode; node <= wire::kLastNode; ++node) {
       jaw(node).channel.share(node, {*settings.key, settings.nonces});
     }
@@ -58,6 +66,9 @@ class Client::Implementation {
     now_us_ = now_us;
     receive();
     if (!settings_.speaks) return;
+    if (link_) {
+      if (const auto frame = link_->speak(*settings_.key, elapsed_ms)) put(*frame);
+    }
     send_cyclic();
     for (std::uint8_t node = wire::kFirstNode; node <= wire::kLastNode; ++node) serve(node, elapsed_ms);
   }
@@ -113,12 +124,19 @@ class Client::Implementation {
       if (!received) return fail(received.error());
       if (!*received) return;
       if ((*received)->origin == bus::Origin::Self) continue;
-      if (const auto error = wire::dispatch((*received)->frame, *this))
-        ++rejected.at(static_cast<std::size_t>(*error));
+      take((*received)->frame);
     }
   }
 
-  void send(const wire::Frame& frame) {
+  void take(const wire::Frame& said) {
+    const std::optional<wire::Frame> frame = link_ ? link_->open(*settings_.key, said) : said;
+    if (!frame) return;
+    if (const auto error = wire::dispatch(*frame, *this)) ++rejected.at(static_cast<std::size_t>(*error));
+  }
+
+  void send(const wire::Frame& frame) { put(link_ ? link_->seal(*settings_.key, frame) : frame); }
+
+  void put(const wire::Frame& frame) {
     const auto sent = bus_.send(frame);
     if (!sent && sent.error().kind != bus::FailureKind::Overflow) fail(sent.error());
   }
@@ -160,6 +178,7 @@ class Client::Implementation {
 
   bus::Bus& bus_;
   Settings settings_;
+  std::optional<wire::SecuredLink<wire::kLastNode>> link_;
   std::array<Jaw, wire::kLastNode + 1> jaws_;
   Cycle heartbeat_;
   Cycle time_;

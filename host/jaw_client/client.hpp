@@ -25,6 +25,7 @@ class Client {
     std::uint16_t epoch = 1;         ///< drawn anew by each start of a host
     bool speaks = true;              ///< false: watches only, and sends nothing
     std::optional<wire::Key> key{};  ///< shared with the controllers: every one of them must know it
+    bool can_fd = false;             ///< with a key: CAN FD, with a MAC in every frame
     std::uint64_t nonces = 1;        ///< with a key: drawn anew by each start of a host
   };
 

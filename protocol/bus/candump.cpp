@@ -55,7 +55,24 @@ bool read_id(std::string_view digits, wire::Frame& frame) {
   return *id <= (kErrorFlag | kExtendedMask);
 }
 
+/// Flags and the 12 bytes of a CAN FD frame of ours; other lengths are not ours.
+bool read_fd_data(std::string_view digits, wire::Frame& frame) {
+  constexpr std::size_t kDigits = 1 + 2 * std::size_t{wire::kFdLength};
+  if (frame.kind == wire::FrameKind::Error || digits.size() != kDigits ||
+      !number_of<std::uint8_t>(digits.substr(0, 1), 16))
+    return false;
+  frame.kind = wire::FrameKind::Fd;
+  frame.length = wire::kFdLength;
+  for (std::size_t i = 0; i < wire::kFdLength; ++i) {
+    const auto byte = number_of<std::uint8_t>(digits.substr(1 + 2 * i, 2), 16);
+    if (!byte) return false;
+    (i < frame.data.size() ? frame.data[i] : frame.tail[i - frame.data.size()]) = *byte;
+  }
+  return true;
+}
+
 bool read_data(std::string_view digits, wire::Frame& frame) {
+  if (digits.starts_with('#')) return read_fd_data(digits.substr(1), frame);
   if (!digits.empty() && digits.front() == 'R') {
     if (frame.kind == wire::FrameKind::Error) return false;
     frame.kind = wire::FrameKind::Remote;
@@ -93,8 +110,14 @@ std::string to_log_line(const LogLine& line) {
     if (line.frame.length > 0) text += static_cast<char>('0' + std::min<int>(line.frame.length, 8));
     return text;
   }
+  const bool fd = line.frame.kind == wire::FrameKind::Fd;
+  if (fd) text += "#1";  // with a bit rate switch
   for (std::size_t i = 0; i < std::min<std::size_t>(line.frame.length, 8); ++i) {
     std::snprintf(head.data(), head.size(), "%02X", unsigned{line.frame.data[i]});
+    text += head.data();
+  }
+  for (std::size_t i = 0; fd && i < line.frame.tail.size(); ++i) {
+    std::snprintf(head.data(), head.size(), "%02X", unsigned{line.frame.tail[i]});
     text += head.data();
   }
   return text;
@@ -116,9 +139,9 @@ Expected<LogLine> parse_log_line(std::string_view text) {
   if (rest.ends_with(" R") || rest.ends_with(" T")) rest.remove_suffix(2);  // direction, as newer tools write
   const std::size_t hash = rest.find('#');
   if (hash == std::string_view::npos) return bad(text, "no frame");
-  if (rest.substr(hash + 1).starts_with('#')) return bad(text, "CAN FD");
   if (!read_id(rest.substr(0, hash), line.frame)) return bad(text, "no such id");
-  if (!read_data(rest.substr(hash + 1), line.frame)) return bad(text, "data are not up to 8 bytes");
+  if (!read_data(rest.substr(hash + 1), line.frame))
+    return bad(text, "data are neither up to 8 bytes nor CAN FD's 12");
   return line;
 }
 

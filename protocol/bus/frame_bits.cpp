@@ -42,10 +42,31 @@ class Stuffer {
   int count_ = 0;
 };
 
+/// Of a frame of 12 bytes with a 17-bit checksum (ISO 11898-1:2015, 10.4.2).
+int fd_bits_on_bus(const wire::Frame& frame) {
+  constexpr int kSlowTrailer = 1 + 1 + 1 + 7;  // CRC delimiter, acknowledge slot and delimiter, end of frame
+  constexpr int kStuffCount = 4;
+  constexpr int kChecksum = 17;
+  constexpr int kFixedStuff = 1 + (kStuffCount + kChecksum) / 4;  // one before, one after every four
+  constexpr int kFaster = 4;
+  Stuffer bits;
+  bits.put(0, 1);  // start of frame
+  bits.put(frame.id & 0x7FFU, 11);
+  bits.put(0b00101, 5);  // remote substitution, extension, FD format, reserved, bit rate switch
+  const int slow = bits.count();
+  bits.put(0, 1);       // error state
+  bits.put(0b1001, 4);  // 12 bytes
+  for (const std::uint8_t byte : frame.data) bits.put(byte, 8);
+  for (const std::uint8_t byte : frame.tail) bits.put(byte, 8);
+  const int fast = bits.count() - slow + kStuffCount + kChecksum + kFixedStuff;
+  return slow + (fast + kFaster - 1) / kFaster + kSlowTrailer + kPause;
+}
+
 }  // namespace
 
 int bits_on_bus(const wire::Frame& frame) {
   if (frame.kind == wire::FrameKind::Error) return 0;
+  if (frame.kind == wire::FrameKind::Fd) return fd_bits_on_bus(frame);
   const bool remote = frame.kind == wire::FrameKind::Remote;
   const int length = std::min<int>(frame.length, 8);
   Stuffer bits;

@@ -47,8 +47,8 @@ struct Station {
   [[nodiscard]] bool wants(const wire::Frame& frame) const {
     if (filters.empty() || frame.kind == wire::FrameKind::Error) return true;
     return std::any_of(filters.begin(), filters.end(), [&frame](const Filter& filter) {
-      return !frame.extended && frame.kind == wire::FrameKind::Data &&
-             (frame.id & filter.mask) == (filter.id & filter.mask);
+      const bool data = frame.kind == wire::FrameKind::Data || frame.kind == wire::FrameKind::Fd;
+      return !frame.extended && data && (frame.id & filter.mask) == (filter.id & filter.mask);
     });
   }
   void take(const Received& message) {

@@ -15,6 +15,7 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
+#include <cstddef>
 #include <cstring>
 #include <utility>
 
@@ -52,6 +53,7 @@ int configure(int descriptor, const Settings& settings) {
   const int on = 1;
   if (!set_option(descriptor, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, errors)) return errno;
   if (settings.hear_self && !set_option(descriptor, SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, on)) return errno;
+  if (!set_option(descriptor, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, on)) return errno;
   if (!set_option(descriptor, SOL_SOCKET, SO_TIMESTAMP, on)) return errno;
   if (!set_option(descriptor, SOL_SOCKET, SO_RCVBUFFORCE, settings.receive_buffer_bytes) &&
       !set_option(descriptor, SOL_SOCKET, SO_RCVBUF, settings.receive_buffer_bytes)) {
@@ -74,17 +76,30 @@ int attach(int descriptor, const std::string& interface) {
   return (request.ifr_flags & IFF_UP) != 0 ? 0 : ENETDOWN;
 }
 
-can_frame to_raw(const wire::Frame& frame) {
-  can_frame raw{};
+/// A classic frame, too, fits into the kernel's frame of CAN FD: its CAN_MTU bytes are laid out alike.
+static_assert(offsetof(canfd_frame, len) == offsetof(can_frame, can_dlc) &&
+              offsetof(canfd_frame, data) == offsetof(can_frame, data));
+
+std::size_t size_of(const wire::Frame& frame) {
+  return frame.kind == wire::FrameKind::Fd ? CANFD_MTU : CAN_MTU;
+}
+
+canfd_frame to_raw(const wire::Frame& frame) {
+  canfd_frame raw{};
   raw.can_id = frame.extended ? (frame.id & CAN_EFF_MASK) | CAN_EFF_FLAG : frame.id & CAN_SFF_MASK;
   if (frame.kind == wire::FrameKind::Remote) raw.can_id |= CAN_RTR_FLAG;
   if (frame.kind == wire::FrameKind::Error) raw.can_id = (frame.id & CAN_ERR_MASK) | CAN_ERR_FLAG;
-  raw.can_dlc = std::min<std::uint8_t>(frame.length, CAN_MAX_DLEN);
-  std::copy_n(frame.data.begin(), raw.can_dlc, raw.data);
+  raw.len = std::min<std::uint8_t>(frame.length, CAN_MAX_DLEN);
+  std::copy_n(frame.data.begin(), raw.len, raw.data);
+  if (frame.kind == wire::FrameKind::Fd) {
+    raw.len = wire::kFdLength;
+    raw.flags = CANFD_BRS;
+    std::copy(frame.tail.begin(), frame.tail.end(), raw.data + frame.data.size());
+  }
   return raw;
 }
 
-wire::Frame from_raw(const can_frame& raw) {
+wire::Frame from_raw(const canfd_frame& raw, bool fd) {
   wire::Frame frame;
   if ((raw.can_id & CAN_ERR_FLAG) != 0) {
     frame.kind = wire::FrameKind::Error;
@@ -94,7 +109,14 @@ wire::Frame from_raw(const can_frame& raw) {
     frame.kind = (raw.can_id & CAN_RTR_FLAG) != 0 ? wire::FrameKind::Remote : wire::FrameKind::Data;
     frame.id = raw.can_id & (frame.extended ? CAN_EFF_MASK : CAN_SFF_MASK);
   }
-  frame.length = std::min<std::uint8_t>(raw.can_dlc, CAN_MAX_DLEN);
+  if (fd) {
+    frame.kind = wire::FrameKind::Fd;
+    frame.length = raw.len;
+    std::copy_n(raw.data, frame.data.size(), frame.data.begin());
+    std::copy_n(raw.data + frame.data.size(), frame.tail.size(), frame.tail.begin());
+    return frame;
+  }
+  frame.length = std::min<std::uint8_t>(raw.len, CAN_MAX_DLEN);
   if (frame.kind != wire::FrameKind::Remote) std::copy_n(raw.data, frame.length, frame.data.begin());
   return frame;
 }
@@ -149,8 +171,9 @@ SocketBus::~SocketBus() {
 
 WriteResult SocketBus::write(const wire::Frame& frame) {
   if (watch_.off()) return WriteResult::Full;  // the kernel would take it, and drop it without a word
-  const can_frame raw = to_raw(frame);
-  if (::write(descriptor_, &raw, sizeof raw) == static_cast<ssize_t>(sizeof raw)) {
+  const canfd_frame raw = to_raw(frame);
+  const std::size_t size = size_of(frame);
+  if (::write(descriptor_, &raw, size) == static_cast<ssize_t>(size)) {
     ++statistics_.sent;
     return WriteResult::Taken;
   }
@@ -186,7 +209,7 @@ bus::Expected<std::optional<bus::Received>> SocketBus::receive() {
   if (!queue_.empty()) {
     if (const auto flushed = flush(); !flushed) return tl::unexpected(flushed.error());
   }
-  can_frame raw{};
+  canfd_frame raw{};
   iovec buffer{&raw, sizeof raw};
   alignas(cmsghdr) std::array<char, 256> control{};
   msghdr message{};
@@ -197,8 +220,9 @@ bus::Expected<std::optional<bus::Received>> SocketBus::receive() {
   const ssize_t size = ::recvmsg(descriptor_, &message, MSG_DONTWAIT);
   if (size < 0 && (errno == EAGAIN || errno == EINTR)) return std::nullopt;
   if (size < 0) return fail(errno);
-  if (size != static_cast<ssize_t>(sizeof raw)) return std::nullopt;
-  const bus::Received received{from_raw(raw), time_us_of(message), origin_of(message.msg_flags)};
+  const bool fd = size == static_cast<ssize_t>(CANFD_MTU);
+  if (!fd && size != static_cast<ssize_t>(CAN_MTU)) return std::nullopt;
+  const bus::Received received{from_raw(raw, fd), time_us_of(message), origin_of(message.msg_flags)};
   watch_.take(received, statistics_);
   ++statistics_.received;
   return received;

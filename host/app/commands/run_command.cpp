@@ -120,7 +120,7 @@ bool drops_frames(const model::Sequence& sequence) {
 }
 
 std::unique_ptr<Venue> open_venue(Context& context, const model::Sequence& sequence,
-                                  const std::optional<wire::Key>& key) {
+                                  const std::optional<model::Authentication>& key) {
   if (context.bus == "sim:") {
     if (context.world.empty()) return open_sim_venue(sequence.cell, context.seed, key);
     context.fail(ExitCode::Usage, "--world goes with --bus can:IFACE; sim: has a world of its own");
@@ -207,7 +207,9 @@ void run_sequence(Context& context, const RunOptions& options) {
   if (options.dry) return print_script(context, *prepared);
   auto host = context.host_settings(prepared->sequence.cell.authentication);
   if (!host) return;
-  const std::unique_ptr<Venue> venue = open_venue(context, prepared->sequence, host->key);
+  std::optional<model::Authentication> authentication;
+  if (host->key) authentication = model::Authentication{.key = *host->key, .can_fd = host->can_fd};
+  const std::unique_ptr<Venue> venue = open_venue(context, prepared->sequence, authentication);
   if (!venue) return;
 
   // on a simulated bus the seed settles everything; on a real one each start is a host of its own

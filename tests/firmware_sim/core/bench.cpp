@@ -129,7 +129,7 @@ void Bench::beat(std::vector<wire::Frame>& frames) {
   if (!host_alive || now_ms % wire::kHostHeartbeat_ms != 0) return;
   beat_counter_ = wire::next_counter(beat_counter_);
   const wire::HostHeartbeat heartbeat{.state = wire::HostState::Run, .permit = host_permit, .epoch = epoch};
-  frames.push_back(wire::pack(heartbeat, {.node = 0, .counter = beat_counter_}));
+  frames.push_back(from_host(wire::pack(heartbeat, {.node = 0, .counter = beat_counter_})));
 }
 
 std::vector<wire::Frame> Bench::delivered(const std::vector<wire::Frame>& frames, std::uint8_t to) {
@@ -158,6 +158,14 @@ void Bench::run(int ms) {
       const auto view = station.outputs.send.view();
       heard.insert(heard.end(), view.begin(), view.end());
     }
+    heard_by_host = heard;
+    if (host_link_) {
+      heard_by_host.clear();
+      for (const wire::Frame& frame : heard) {
+        if (const auto opened = host_link_->open(*key_, frame)) heard_by_host.push_back(*opened);
+      }
+      if (const auto frame = host_link_->speak(*key_, 1)) injected_.push_back(*frame);
+    }
     ++now_ms;
     if (after_step) after_step();
   }
@@ -175,10 +183,12 @@ bool Bench::reaches(std::uint8_t node, StateId state, int most_ms) {
   return run_until(most_ms, [&] { return at(node).id() == state; });
 }
 
-void Bench::share_key(const wire::Key& key) {
+void Bench::share_key(const wire::Key& key, bool can_fd) {
   key_ = key;
+  if (can_fd) host_link_.emplace(wire::kHostNode, wire::FrameNumber{1} << 40);
   for (Station& station : stations_) {
     station.config.key = key;
+    station.config.can_fd = can_fd;
     station.power_on_again();
   }
 }
@@ -201,10 +211,10 @@ std::optional<wire::Acknowledge> Bench::command(std::uint8_t node, wire::Command
   }
   command = sealed_for(node, command);
   for (int attempt = 0; attempt < 20; ++attempt) {
-    inject(wire::pack(command, {.node = node}));
+    inject(from_host(wire::pack(command, {.node = node})));
     for (int ms = 0; ms < wire::kAcknowledge_ms; ++ms) {
       run(1);
-      for (const wire::Frame& frame : heard) {
+      for (const wire::Frame& frame : heard_by_host) {
         const auto answer = wire::parse<wire::Acknowledge>(frame);
         const bool mine = answer && answer->label.node == node && answer->message.op == command.op &&
                           answer->message.sequence == command.sequence;

@@ -11,6 +11,7 @@
 #include "protocol/wire/codec.hpp"
 #include "protocol/wire/commands.hpp"
 #include "protocol/wire/layout.hpp"
+#include "protocol/wire/secured_link.hpp"
 #include "protocol/wire/session.hpp"
 #include "tests/firmware_sim/core/toy_jaw.hpp"
 
@@ -76,8 +77,13 @@ class Bench {
   void load(std::uint8_t node, const wire::Layout& layout);
   void load_all();
 
-  /// All stations are given `key` and started again; commands are sealed with it from now on.
-  void share_key(const wire::Key& key);
+  /// All stations are given `key` and started again; commands are sealed with it from now on. With `can_fd`
+  /// every frame is.
+  void share_key(const wire::Key& key, bool can_fd = false);
+  /// `frame` as the host says it.
+  wire::Frame from_host(const wire::Frame& frame) {
+    return host_link_ ? host_link_->seal(*key_, frame) : frame;
+  }
 
   /// The part lies on the pallet and the pallet answers for it: HOLD.
   void load_pallet();
@@ -99,7 +105,8 @@ class Bench {
   std::function<void(std::uint8_t to, std::vector<wire::Frame>& frames)> on_delivery;
   /// Called after each millisecond.
   std::function<void()> after_step;
-  std::vector<wire::Frame> heard;  ///< what stations said in the last step
+  std::vector<wire::Frame> heard;          ///< what stations said in the last step
+  std::vector<wire::Frame> heard_by_host;  ///< the same, opened
   int now_ms = 0;
 
  private:
@@ -122,6 +129,7 @@ class Bench {
   std::array<wire::SequenceIssuer, 16> sequence_{};
   std::array<std::uint16_t, 16> session_{};
   std::optional<wire::Key> key_;
+  std::optional<wire::SecuredLink<wire::kLastNode>> host_link_;
   std::uint8_t beat_counter_ = 0;
   std::uint8_t arm_sequence_ = 0;
   std::uint32_t random_ = 12345;

@@ -30,6 +30,7 @@ NvmRecord some_record(RecordEngine& engine) {
                    .force_set_dn = any_u16(engine),
                    .permit_dn = any_u16(engine),
                    .session_block = static_cast<std::uint32_t>(engine()),
+                   .frame_block = static_cast<std::uint32_t>(engine()),
                    .boot_count = any_u16(engine),
                    .seen_givers = any_u16(engine)};
   for (auto& token : record.last_token) token = any_u16(engine);

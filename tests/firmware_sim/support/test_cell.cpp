@@ -22,6 +22,7 @@ node::Figures figures_of(const TestGrip& grip) {
   figures.passive = grip.passive;
   figures.kit_id = kKitId;
   figures.key = grip.key;
+  figures.can_fd = grip.can_fd;
   figures.force_uncertainty_n = grip.passive ? 0 : kUncertainty_n;
   figures.max_squeeze_n = grip.passive ? 0 : 140;
   return figures;

@@ -21,6 +21,7 @@ struct TestGrip {
   double needed_n = 40;
   double limit_n = 140;
   std::optional<wire::Key> key{};  ///< the controller asks for; the scripted host knows none
+  bool can_fd = false;
 };
 
 /// A passive station 3 and two grippers 1 and 2, all of them peers of each other.

@@ -25,8 +25,9 @@ constexpr wire::Key kOther{0xDE, 0xAD, 0xBE, 0xEF, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10
 /// A cell whose controllers have `nodes_key`, and a host with `hosts_key`.
 class Keyed {
  public:
-  Keyed(std::optional<wire::Key> nodes_key, std::optional<wire::Key> hosts_key)
-      : grips(keyed(nodes_key)), client(*end, {.epoch = 0x4242, .key = hosts_key, .nonces = 42}) {
+  Keyed(std::optional<wire::Key> nodes_key, std::optional<wire::Key> hosts_key, bool can_fd = false)
+      : grips(keyed(nodes_key, can_fd)),
+        client(*end, {.epoch = 0x4242, .key = hosts_key, .can_fd = can_fd, .nonces = 42}) {
     cell.kill_host_at(0);
     pass(200);
   }
@@ -80,9 +81,9 @@ class Keyed {
   }
   const core::State& firmware(std::uint8_t node) { return cell.world().find(node)->firmware(); }
 
-  static std::vector<test::TestGrip> keyed(const std::optional<wire::Key>& key) {
+  static std::vector<test::TestGrip> keyed(const std::optional<wire::Key>& key, bool can_fd) {
     std::vector<test::TestGrip> grips = test::arm_pedestal_pallet();
-    for (test::TestGrip& grip : grips) grip.key = key;
+    for (test::TestGrip& grip : grips) grip.key = key, grip.can_fd = can_fd;
     return grips;
   }
 
@@ -92,8 +93,13 @@ class Keyed {
   Client client;
 };
 
-TEST(HostWithTheKey, arms_and_hands_a_part_over) {
-  Keyed keyed(kKey, kKey);
+class HostOnEitherBus : public testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(Buses, HostOnEitherBus, testing::Bool(),
+                         [](const auto& fd) { return fd.param ? "can_fd" : "classic"; });
+
+TEST_P(HostOnEitherBus, with_the_key_arms_and_hands_a_part_over) {
+  Keyed keyed(kKey, kKey, GetParam());
+  keyed.pass(600);
   for (const std::uint8_t node : {kArm, kPedestal, kPallet}) {
     const Outcome armed = keyed.send_and_arm(node);
     ASSERT_TRUE(armed.done()) << armed.sentence;
@@ -106,8 +112,9 @@ TEST(HostWithTheKey, arms_and_hands_a_part_over) {
     EXPECT_EQ(keyed.firmware(node).counters.wrong_macs, 0U);
 }
 
-TEST(HostWithTheKey, arms_on_a_bus_that_loses_a_fifth_of_its_frames) {
-  Keyed keyed(kKey, kKey);
+TEST_P(HostOnEitherBus, with_the_key_arms_though_a_fifth_of_all_frames_is_lost) {
+  Keyed keyed(kKey, kKey, GetParam());
+  keyed.pass(600);
   ASSERT_TRUE(keyed.send_and_arm(kArm).done());
   keyed.cell.bus().add_fault({.kind = bus::FaultKind::Drop, .share = 0.2});
   int done = 0;

@@ -41,6 +41,18 @@ TEST(Candump, reads_what_it_writes) {
   }
 }
 
+TEST(Candump, writes_and_reads_frames_of_can_fd) {
+  Frame frame{.id = 0x62, .kind = FrameKind::Fd, .length = wire::kFdLength};
+  frame.data = {1, 2, 3, 4, 5, 6, 7, 8};
+  frame.tail = {0xAA, 0xBB, 0xCC, 0xDD};
+  const LogLine line{1, "can0", frame};
+  EXPECT_EQ(to_log_line(line), "(0000000000.000001) can0 062##10102030405060708AABBCCDD");
+  const auto back = parse_log_line(to_log_line(line));
+  ASSERT_TRUE(back.has_value()) << back.error().message;
+  EXPECT_EQ(*back, line);
+  EXPECT_FALSE(parse_log_line("(1.000000) can0 20000040##10102030405060708AABBCCDD").has_value());
+}
+
 TEST(Candump, reads_lines_of_newer_tools) {
   for (const char* text :
        {"(1.000000) can0 123#01 R", "(1.000000) can0 123#01\r", "(1.000000) can0 123#01 T"}) {

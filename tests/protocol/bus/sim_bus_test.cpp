@@ -295,5 +295,24 @@ TEST(SimBus, runs_alike_however_its_time_is_cut) {
   EXPECT_EQ(run(1), run(100'000));
 }
 
+TEST(SimBus, a_frame_of_can_fd_arrives_whole_and_takes_the_time_of_a_classic_one_at_most) {
+  // ISO 11898-1: 17 + 13 bits at the slow rate, 5 + 96 + 4 + 17 + 6 at four times that, and stuff bits
+  wire::Frame frame{.id = 0x155, .kind = wire::FrameKind::Fd, .length = wire::kFdLength};
+  frame.data.fill(0x55);
+  frame.tail.fill(0x55);
+  const int bits = bits_on_bus(frame);
+  EXPECT_GE(bits, 30 + 32);
+  EXPECT_LE(bits, 30 + 32 + 3 + (1 + 4) / 4 + 4);
+  SimBus bus;
+  const auto sender = bus.open();
+  const auto receiver = bus.open({{.id = 0x155, .mask = 0x7FF}});
+  ASSERT_TRUE(sender->send(frame));
+  bus.advance_to(1000);
+  const auto received = receiver->receive();
+  ASSERT_TRUE(received && *received);
+  EXPECT_EQ((*received)->frame, frame);
+  EXPECT_NEAR(static_cast<double>((*received)->time_us), bits * 2.0, 2.0);
+}
+
 }  // namespace
 }  // namespace pinjaw::bus
