@@ -52,7 +52,9 @@ class Line {
   }
 
   void run() {
-    for (int ms = 0; ms < 4000 && (!script_.empty() || sender_.busy() || receiver_.busy()); ++ms) step();
+    constexpr int kLongest_ms = 20'000;  // 37 gaps of at most 127 ms, and every wait that may come between
+    for (int ms = 0; ms < kLongest_ms && (!script_.empty() || sender_.busy() || receiver_.busy()); ++ms)
+      step();
     must(!sender_.busy(), "a sender that never ends");
     for (int ms = 0; ms <= wire::kTransferTimeout_ms; ++ms) receiver_.advance(1);
     must(!receiver_.busy(), "a receiver that never ends");
