@@ -8,11 +8,11 @@
 /// what it was, so that a constexpr function mutates only where it runs.
 namespace pinjaw::mutation {
 
-inline constexpr int kTable = 1 << 13;      ///< ids of mutants in the code are below
-inline constexpr int kPlaces = 1 << 10;     ///< the state table has fewer
-inline constexpr int kValues = 32;          ///< a place's mutants: kTable + place * kValues + value
+inline constexpr int kTable = 1 << 13;   ///< ids of mutants in the code are below
+inline constexpr int kPlaces = 1 << 10;  ///< the state table has fewer
+inline constexpr int kValues = 32;       ///< a place's mutants: kTable + place * kValues + value
 
-extern int chosen;                              ///< the mutant that this process is; -1: none
+extern int chosen;                               ///< the mutant that this process is; -1: none
 extern unsigned char reached[kTable + kPlaces];  ///< 1 where a run came by
 
 constexpr bool mutant(int id) {

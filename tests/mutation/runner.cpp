@@ -1,7 +1,9 @@
 // Runs the tests of wire and core once for each mutant, each in a process of its own.
 //
+//     mutants                    the tests themselves, without any mutant
 //     mutants --reach FILE       which mutants each test comes by, and its CPU time
-//     mutants --kill PLAN FILE   PLAN: lines `id test:test:...`, quick ones first; FILE gets `id verdict ms test` lines
+//     mutants --kill PLAN FILE   PLAN: lines `id test:test:...`, quick ones first; FILE gets `id verdict ms
+//     test` lines
 //
 // A mutant is killed by a test that fails, crashes or runs out of CPU time.
 #include <gtest/gtest.h>
@@ -30,7 +32,8 @@ unsigned char reached[kTable + kPlaces];
 
 namespace {
 
-constexpr int kCpuLimit_s = 3;  // every test takes well under a second of it; a mutant's endless loop does not
+constexpr int kCpuLimit_s =
+    3;  // every test takes well under a second of it; a mutant's endless loop does not
 
 std::vector<std::string> all_tests() {
   std::vector<std::string> names;
@@ -55,7 +58,8 @@ bool pass(const std::string& filter) {
 void be_quiet() {
   auto& listeners = testing::UnitTest::GetInstance()->listeners();
   delete listeners.Release(listeners.default_result_printer());
-  if (std::freopen("/dev/null", "w", stdout) == nullptr || std::freopen("/dev/null", "w", stderr) == nullptr) std::_Exit(2);
+  if (std::freopen("/dev/null", "w", stdout) == nullptr || std::freopen("/dev/null", "w", stderr) == nullptr)
+    std::_Exit(2);
 }
 
 void limit_cpu() {
@@ -68,12 +72,15 @@ void limit_cpu() {
 }
 
 double cpu_ms_of(const rusage& usage) {
-  const auto ms = [](const timeval& t) { return static_cast<double>(t.tv_sec) * 1e3 + static_cast<double>(t.tv_usec) / 1e3; };
+  const auto ms = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) * 1e3 + static_cast<double>(t.tv_usec) / 1e3;
+  };
   return ms(usage.ru_utime) + ms(usage.ru_stime);
 }
 
 int reach(const char* file) {
   std::ofstream out(file);
+  int bad = 0;
   for (const std::string& name : all_tests()) {
     int ends[2];
     if (pipe(ends) != 0) return 2;
@@ -99,7 +106,7 @@ int reach(const char* file) {
     wait4(child, &status, 0, &usage);
     if (status != 0) {
       std::fprintf(stderr, "mutants: %s fails without any mutant\n", name.c_str());
-      return 1;
+      bad = 1;
     }
     out << name << ' ' << cpu_ms_of(usage);
     for (std::size_t id = 0; id < seen.size(); ++id) {
@@ -107,7 +114,7 @@ int reach(const char* file) {
     }
     out << '\n';
   }
-  return 0;
+  return bad;
 }
 
 struct Job {
@@ -185,6 +192,7 @@ int main(int argc, char** argv) {
   setenv("RC_PARAMS", "seed=1 noshrink=1", 1);
   testing::InitGoogleTest(&argc, argv);
   if (argc == 3 && std::string(argv[1]) == "--reach") return pinjaw::mutation::reach(argv[2]);
+  if (argc == 1) return RUN_ALL_TESTS();
   if (argc == 4 && std::string(argv[1]) == "--kill") return pinjaw::mutation::kill_all(argv[2], argv[3]);
   std::fprintf(stderr, "usage: mutants --reach FILE | --kill PLAN FILE\n");
   return 2;

@@ -1,0 +1,266 @@
+// Promises: TELEMETRY.
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <vector>
+
+#include "firmware_sim/core/telemetry.hpp"
+#include "tests/firmware_sim/core/made_state.hpp"
+
+/// Each word of what a node says of itself.
+namespace pinjaw::core::test {
+namespace {
+
+/// Everything that `state` says in the next second, by message.
+template <class Message>
+std::vector<Message> said(State& state, int ms = 1, const Valves& valves = {}) {
+  std::vector<Message> messages;
+  for (int i = 0; i < ms; ++i) {
+    SendQueue queue;
+    report(state, 1, valves, state.announced, queue);
+    for (const wire::Frame& frame : queue.view()) {
+      const auto message = wire::parse<Message>(frame);
+      if (message) messages.push_back(message->message);
+      if (message) {
+        EXPECT_EQ(message->label.node, kArm);
+      }
+    }
+  }
+  return messages;
+}
+
+wire::NodeState status_of(State state) {
+  const auto messages = said<wire::NodeState>(state);
+  EXPECT_EQ(messages.size(), 1U);
+  return messages.empty() ? wire::NodeState{} : messages[0];
+}
+
+TEST(Status, of_a_holder_says_each_thing_that_is_so) {
+  State state = made(StateId::Hold);
+  squeeze_with(state, 800);
+  state.announced.fact = wire::Fact::Sole;
+  const wire::NodeState wanted{.state = StateId::Hold,
+                               .layout_ok = true,
+                               .host_alive = true,
+                               .part = true,
+                               .hold_stable = true,
+                               .custody = wire::Fact::Sole,
+                               .f_low_dn = 680,
+                               .separation_50um = 600};
+  EXPECT_EQ(status_of(state), wanted);
+  const std::vector<std::pair<std::function<void(State&)>, std::function<void(wire::NodeState&)>>> changes = {
+      {[](State& s) { s.gate.open(5); }, [](wire::NodeState& w) { w.armed = true; }},
+      {[](State& s) { s.host = {}; }, [](wire::NodeState& w) { w.host_alive = false; }},
+      {[](State& s) { s.timers.stable.start(1); }, [](wire::NodeState& w) { w.hold_stable = false; }},
+      {[](State& s) { s.guard.cut = true; }, [](wire::NodeState& w) { w.at_limit = true; }},
+      {[](State& s) { s.permit_dn = 920; }, [](wire::NodeState&) {}},
+      {[](State& s) { s.permit_dn = 919; },
+       [](wire::NodeState& w) {
+         w.at_limit = true;
+         w.hold_stable = false;
+       }},
+      {[](State& s) { s.measurement.local_enable = true; },
+       [](wire::NodeState& w) { w.manual_enable = true; }},
+      {[](State& s) { s.measurement.supply_low = true; }, [](wire::NodeState& w) { w.degraded = true; }},
+      {[](State& s) { s.faults.raise(wire::FaultCode::Slip); },
+       [](wire::NodeState& w) { w.fault = wire::FaultCode::Slip; }},
+      {[](State& s) { s.measurement.separation_10um = -7; },
+       [](wire::NodeState& w) {
+         w.separation_50um = 0;
+         w.part = w.hold_stable = false;
+       }},
+      {[](State& s) { squeeze_with(s, 100); },
+       [](wire::NodeState& w) {
+         w.f_low_dn = 0;
+         w.hold_stable = false;
+       }}};
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    State changed = state;
+    wire::NodeState expected = wanted;
+    changes[i].first(changed);
+    changes[i].second(expected);
+    EXPECT_EQ(status_of(changed), expected) << i;
+  }
+}
+
+TEST(Status, feels_a_part_where_it_is_seated_or_gripped_at_contact) {
+  for (std::size_t i = 0; i < kStates; ++i) {
+    State state = made(static_cast<StateId>(i));
+    const bool seated = state.id == StateId::Seated || state.id == StateId::Squeezing;
+    EXPECT_EQ(status_of(state).part, seated || grips(state.id)) << i;
+    EXPECT_EQ(status_of(state).state, state.id);
+    state.measurement.separation_10um = 4000;
+    EXPECT_EQ(status_of(state).part, seated) << i;
+    state.measurement.separation_10um = 3000;
+    state.layouts.committed = false;
+    EXPECT_EQ(status_of(state).part, seated) << i;
+    EXPECT_FALSE(status_of(state).layout_ok);
+    state.config.passive = true;
+    EXPECT_FALSE(status_of(state).part);
+    state.measurement.seated = true;
+    EXPECT_TRUE(status_of(state).part);
+  }
+}
+
+TEST(Status, of_a_passive_station_knows_no_force_and_no_limit) {
+  State state = made(StateId::Hold);
+  state.config.passive = true;
+  squeeze_with(state, 5000);
+  state.guard.cut = true;
+  EXPECT_EQ(status_of(state).f_low_dn, 0);
+  EXPECT_FALSE(status_of(state).at_limit);
+  State other = state;
+  const auto forces = said<wire::Force>(other, 20);
+  ASSERT_EQ(forces.size(), 1U);
+  EXPECT_EQ(forces[0], (wire::Force{0, 0, 0, 0}));
+  State again = state;
+  const auto custody = said<wire::Custody>(again);
+  ASSERT_EQ(custody.size(), 1U);
+  EXPECT_EQ(custody[0].f_low_n, 0);
+}
+
+TEST(Forces, are_said_as_measured_set_and_limited) {
+  State state = made(StateId::Hold);
+  state.force_set_dn = 700;
+  squeeze_with(state, 800);
+  const auto forces = said<wire::Force>(state, 20);
+  ASSERT_EQ(forces.size(), 1U);
+  EXPECT_EQ(forces[0], (wire::Force{920, 700, 1400, 800}));
+}
+
+TEST(CustodySaid, with_its_force_in_newtons) {
+  State state = made(StateId::Hold);
+  state.announced = {wire::Fact::Sole, kPedestal, 7, 8};
+  squeeze_with(state, 800);
+  const auto custody = said<wire::Custody>(state);
+  ASSERT_EQ(custody.size(), 1U);
+  EXPECT_EQ(custody[0], (wire::Custody{wire::Fact::Sole, kPedestal, 7, 8, 68}));
+  for (const auto& [measured_dn, said_n] : {std::pair{0, 0}, {129, 0}, {130, 1}, {2669, 254}, {9999, 254}}) {
+    State other = made(StateId::Hold);
+    squeeze_with(other, measured_dn);
+    EXPECT_EQ(said<wire::Custody>(other)[0].f_low_n, said_n) << measured_dn;
+  }
+}
+
+TEST(CustodySaid, every_20_ms_in_a_handoff_and_every_100_ms_outside) {
+  for (std::size_t i = 0; i < kStates; ++i) {
+    for (const wire::Fact fact :
+         {wire::Fact::Empty, wire::Fact::Released, wire::Fact::Retain, wire::Fact::Sole}) {
+      using enum wire::State;
+      State state = made(static_cast<StateId>(i));
+      state.announced.fact = fact;
+      const StateId id = state.id;
+      const bool handing = (id >= Seating && id <= Taken) || (id >= Offered && id <= Opening) ||
+                           ((id == Loaded || id == Ready) && fact == wire::Fact::Released) ||
+                           (id == Hold && fact == wire::Fact::Retain);
+      EXPECT_EQ(said<wire::Custody>(state, 200).size(), handing ? 10U : 2U)
+          << i << ' ' << static_cast<int>(fact);
+    }
+  }
+}
+
+TEST(CustodySaid, at_once_when_it_changes) {
+  State state = made(StateId::Hold);
+  said<wire::Custody>(state);
+  SendQueue queue;
+  report(state, 1, {}, {wire::Fact::Take, 1, 2, 3}, queue);
+  EXPECT_EQ(queue.size, 1U);
+}
+
+TEST(PneumaticsSaid, in_2_5_mbar_and_a_bit_for_each_valve) {
+  const std::vector<std::pair<Valves, int>> bits = {
+      {{}, 0},
+      {{.spool = Spool::Close}, 1},
+      {{.spool = Spool::Open}, 2},
+      {{.relax = true}, 4},
+      {{.pre_vent = true}, 8},
+      {{.supply_cut = true}, 16},
+      {{.spool = Spool::Close, .relax = true, .supply_cut = true}, 21}};
+  for (const auto& [valves, wanted] : bits) {
+    State state = made(StateId::Hold);
+    state.measurement.close_ubar = {4'000'000, 4'010'000};
+    state.measurement.open_ubar = 252'500;
+    state.measurement.supply_mbar = 6000;
+    const auto said_now = said<wire::Pneumatics>(state, 1, valves);
+    ASSERT_EQ(said_now.size(), 1U);
+    EXPECT_EQ(said_now[0],
+              (wire::Pneumatics{1602, 101, 2400, static_cast<std::uint8_t>(wanted), std::nullopt}));
+  }
+}
+
+TEST(IdentitySaid, in_five_pages_20_ms_apart_and_then_one_a_second) {
+  State state = made(StateId::Loaded);
+  state.config.serial = 4711;
+  state.store.record.boot_count = 12;
+  std::vector<int> times;
+  for (int ms = 0; ms < 4000; ++ms) {
+    const auto pages = said<wire::Identity>(state);
+    for (const wire::Identity& identity : pages) {
+      EXPECT_EQ(static_cast<std::size_t>(identity.page), times.size() % 5);
+      if (identity.page == wire::IdentityPage::Product) {
+        EXPECT_EQ(identity.product, 0x504A);
+        EXPECT_EQ(identity.hardware, 1);
+      }
+      if (identity.page == wire::IdentityPage::Firmware) {
+        EXPECT_EQ(identity.major, 0);
+        EXPECT_EQ(identity.minor, 1);
+        EXPECT_EQ(identity.patch, 0);
+      }
+      if (identity.page == wire::IdentityPage::Serial) {
+        EXPECT_EQ(identity.serial, 4711U);
+      }
+      if (identity.page == wire::IdentityPage::Boot) {
+        EXPECT_EQ(identity.boots, 12);
+        EXPECT_EQ(identity.memory, wire::MemoryStatus::Good);
+      }
+      times.push_back(ms);
+    }
+  }
+  EXPECT_EQ(times, (std::vector<int>{0, 20, 40, 60, 80, 1080, 2080, 3080}));
+  State failed = made(StateId::Loaded);
+  failed.store.failed = true;
+  failed.identity_page = 4;
+  EXPECT_EQ(said<wire::Identity>(failed)[0].memory, wire::MemoryStatus::Lost);
+}
+
+TEST(LayoutSaid, by_its_checksum_every_half_second) {
+  State state = made(StateId::Loaded);
+  const auto layouts = said<wire::LayoutStatus>(state, 1001);
+  ASSERT_EQ(layouts.size(), 3U);
+  EXPECT_EQ(layouts[0], (wire::LayoutStatus{state.layouts.crc, 0x1234}));
+}
+
+TEST(FaultsSaid, with_severity_and_state_while_active_and_when_they_went) {
+  State state = made(StateId::Hold);
+  state.faults.raise(wire::FaultCode::Slip);
+  auto faults = said<wire::FaultReport>(state, 201);
+  ASSERT_EQ(faults.size(), 3U);
+  for (const wire::FaultReport& fault : faults) {
+    EXPECT_EQ(fault,
+              (wire::FaultReport{wire::FaultCode::Slip, wire::Severity::Hold, true, StateId::Hold, 0}));
+  }
+  state.faults.clear(wire::FaultCode::Slip);
+  faults = said<wire::FaultReport>(state, 200);
+  ASSERT_EQ(faults.size(), 1U);
+  EXPECT_FALSE(faults[0].active);
+}
+
+TEST(FaultsSaid, of_a_manual_release_carry_the_challenge_while_it_may_be_answered) {
+  State state = made(StateId::Hold);
+  state.challenge = 321;
+  state.timers.challenge.start(150);
+  auto faults = said<wire::FaultReport>(state);
+  ASSERT_EQ(faults.size(), 1U);
+  EXPECT_EQ(faults[0], (wire::FaultReport{wire::FaultCode::ManualRelease, wire::Severity::Info, false,
+                                          StateId::Hold, 321}));
+  state.timers.challenge.stop();
+  EXPECT_EQ(said<wire::FaultReport>(state, 200).size(), 0U);
+  state.faults.raise(wire::FaultCode::ManualRelease);
+  faults = said<wire::FaultReport>(state);
+  ASSERT_EQ(faults.size(), 1U);
+  EXPECT_EQ(faults[0].severity, wire::Severity::Warning);
+  EXPECT_EQ(faults[0].argument, 0);
+}
+
+}  // namespace
+}  // namespace pinjaw::core::test
