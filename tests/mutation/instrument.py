@@ -176,6 +176,8 @@ class Walk:
             return
         if kind == K.LAMBDA_EXPR:
             result = None
+        if kind == K.CALL_EXPR and node.spelling == "keeps":
+            return
         if kind.is_expression():
             self.expression(node, function)
         if kind == K.IF_STMT:
@@ -333,7 +335,9 @@ class Walk:
             self.file.mutate(node, both(COMPARISONS[operator]), "comparison", function)
         elif operator in ("&&", "||"):
             other = "||" if operator == "&&" else "&&"
-            choices = [f"({a}) {other} ({b})", f"static_cast<bool>({a})", f"static_cast<bool>({b})"]
+            choices = [f"({a}) {other} ({b})", f"static_cast<bool>({b})"]
+            if not re.fullmatch(r"!?keeps\([\w:]+\)", b):  # firmware_sim/core/rules.hpp: here every rule is kept, so b says nothing
+                choices.append(f"static_cast<bool>({a})")
             self.file.mutate(node, choices, "logical", function)
         elif operator in ARITHMETIC and T.POINTER not in (left.type.get_canonical().kind, right.type.get_canonical().kind):
             self.file.mutate(node, both(ARITHMETIC[operator]), "arithmetic", function)

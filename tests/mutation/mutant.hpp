@@ -5,7 +5,7 @@
 /// What the mutated copies of the portable code ask at every place where they can go wrong.
 ///
 /// All mutants live in one binary. A process is told which of them it is; in constant evaluation the code is
-/// what it was, so that a constexpr function mutates only where it runs.
+/// what it was, so that a constexpr function mutates only where it runs; unless PINJAW_MUTANT names one, for a build of its own.
 namespace pinjaw::mutation {
 
 inline constexpr int kTable = 1 << 13;   ///< ids of mutants in the code are below
@@ -15,8 +15,12 @@ inline constexpr int kValues = 32;       ///< a place's mutants: kTable + place 
 extern int chosen;                               ///< the mutant that this process is; -1: none
 extern unsigned char reached[kTable + kPlaces];  ///< 1 where a run came by
 
+#ifndef PINJAW_MUTANT
+#define PINJAW_MUTANT -1  // a build of its own for a mutant that only the compiler runs
+#endif
+
 constexpr bool mutant(int id) {
-  if (std::is_constant_evaluated()) return false;
+  if (std::is_constant_evaluated()) return id == PINJAW_MUTANT;
   reached[id] = 1;
   return chosen == id;
 }

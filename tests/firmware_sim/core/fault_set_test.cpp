@@ -29,6 +29,7 @@ const std::map<FaultCode, Severity>& severities() {
                                                       {BadSequence, Severity::Warning},
                                                       {BadSession, Severity::Warning},
                                                       {InDoubt, Severity::Warning},
+                                                      {Authentication, Severity::Warning},
                                                       {ManualRelease, Severity::Warning},
                                                       {CustodyMemory, Severity::Latched},
                                                       {MemorySelfTest, Severity::Latched},

@@ -1,0 +1,111 @@
+// Promises: CODEC.
+#include <gtest/gtest.h>
+
+#include <string_view>
+
+#include "protocol/wire/codec.hpp"
+#include "protocol/wire/layout.hpp"
+#include "protocol/wire/table.hpp"
+
+/// What the compiler makes of the tables, checked by the compiler.
+namespace pinjaw::wire {
+namespace {
+
+template <class Crc>
+constexpr auto check_value_of(std::string_view text) {
+  Crc crc;
+  for (const char c : text) crc.add(static_cast<std::uint8_t>(c));
+  return crc.value();
+}
+
+static_assert(check_value_of<Crc8>("123456789") == 0xDF);
+static_assert(check_value_of<Crc16>("123456789") == 0xC2B7);
+static_assert(check_value_of<Crc32>("123456789") == 0xCBF43926);
+
+/// Every entry by long division, and a count of them.
+template <class Entry, std::size_t N>
+constexpr bool divides(const std::array<Entry, N>& table, Entry polynomial, bool reflected) {
+  constexpr unsigned kBits = sizeof(Entry) * 8;
+  for (unsigned byte = 0; byte < 256; ++byte) {
+    Entry rest = reflected ? static_cast<Entry>(byte) : static_cast<Entry>(Entry(byte) << (kBits - 8));
+    for (int bit = 0; bit < 8; ++bit) {
+      const bool out = reflected ? (rest & 1U) != 0 : (rest >> (kBits - 1)) != 0;
+      rest = static_cast<Entry>(reflected ? rest >> 1 : rest << 1);
+      if (out) rest = static_cast<Entry>(rest ^ polynomial);
+    }
+    if (table[byte] != rest) return false;
+  }
+  return N == 256;
+}
+static_assert(divides<std::uint8_t>(detail::kCrc8Table, 0x2F, false));
+static_assert(divides<std::uint32_t>(detail::kCrc32Table, 0xEDB88320, true));
+
+static_assert(detail::same_text("", "") && detail::same_text("ab", "ab"));
+static_assert(!detail::same_text("ab", "abc") && !detail::same_text("abc", "ab"));
+static_assert(!detail::same_text("ab", "ac") && !detail::same_text("ab", "bb") &&
+              !detail::same_text("", "a"));
+
+constexpr ValueName kThirtyOne[] = {{0, "NOUGHT"}, {31, "LAST"}};
+constexpr ValueName kThirtyTwo[] = {{0, "NOUGHT"}, {32, "PAST"}};
+static_assert(bits_of(kThirtyOne) == 0x80000001 && bits_of(kThirtyTwo) == 0 && bits_of({}) == 0);
+static_assert(bits_of(kStateNames) == 0xFFFF && bits_of(kFactNames) == 0x803F);
+
+/// The nodes that may say, or be told, a message: 1 to 14; anyone a GLOBAL_HOLD; the host alone its own.
+constexpr bool nodes_are_those_of_the_catalogue() {
+  for (const MessageSpec& spec : kMessages) {
+    const bool any = spec.type == MessageType::GlobalHold;
+    const bool host = spec.type == MessageType::HostHeartbeat || spec.type == MessageType::Time;
+    for (std::uint8_t node = 0; node < 18; ++node) {
+      const bool legal = any ? node <= 15 : host ? node == 0 : node >= 1 && node <= 14;
+      if (node_is_legal(spec, node) != legal) return false;
+      if (node < 16 && (detail::address_of(spec.type).legal_nodes >> node & 1U) != (legal ? 1U : 0U))
+        return false;
+    }
+    if (detail::address_of(spec.type).base_id != spec.base_id) return false;
+    if (detail::address_of(spec.type).protection != spec.protection) return false;
+  }
+  return true;
+}
+static_assert(nodes_are_those_of_the_catalogue());
+
+constexpr FieldSpec kEmptyField{};
+static_assert(kEmptyField.start == 0 && kEmptyField.length == 0 && !kEmptyField.all_ones_is_unknown);
+static_assert(kEmptyField.raw_maximum == 0 && kEmptyField.presence == Presence::Always &&
+              kEmptyField.selector == 0);
+static_assert(kEmptyField.factor.numerator == 1 && kEmptyField.factor.denominator == 1 &&
+              kEmptyField.value_bits == 0);
+static_assert(ValueName{}.value == 0 && PairSide{}.node == 0 && PairSide{}.layout_crc == 0);
+static_assert(MessageSpec{}.base_id == 0 && MessageSpec{}.per_node && MessageSpec{}.period_ms == 0);
+static_assert(detail::Address{}.base_id == 0 && detail::Address{}.legal_nodes == 0);
+
+constexpr FieldSpec kNibble{.name = "NIBBLE", .start = 4, .length = 4, .raw_maximum = 9};
+constexpr FieldSpec kKnown{.name = "KNOWN", .start = 8, .length = 8};
+constexpr FieldSpec kUnknown{.name = "UNKNOWN", .start = 8, .length = 8, .all_ones_is_unknown = true};
+constexpr FieldSpec kNamed{.name = "NAMED", .start = 8, .length = 8, .values = kThirtyOne};
+static_assert(kNibble.largest() == 9 && kKnown.largest() == 255 && kUnknown.largest() == 254);
+static_assert(kNibble.mask() == 0xF0 && kKnown.mask() == 0xFF00);
+static_assert(kNibble.admits(9) && !kNibble.admits(10) && !kNibble.admits(15));
+static_assert(kKnown.admits(255) && kUnknown.admits(254) && kUnknown.admits(255) && !kUnknown.admits(256));
+static_assert(!kKnown.admits(256));
+static_assert(kNamed.admits(0) && kNamed.admits(31) && !kNamed.admits(1) && !kNamed.admits(32) &&
+              !kNamed.admits(300));
+
+TEST(Constants, of_the_tables_hold_at_run_time_too) {
+  for (const FieldSpec* field : {&kNibble, &kKnown, &kUnknown, &kNamed}) {
+    const detail::FieldRule rule(*field);
+    EXPECT_EQ(rule.start(), field->start);
+    EXPECT_EQ(rule.mask() << rule.start(), field->mask());
+    for (std::uint64_t raw = 0; raw < 256; ++raw) {
+      if (field == &kNibble) continue;  // a bound that is CTR's alone
+      EXPECT_EQ(rule.admits(raw), field->admits(raw)) << field->name << ' ' << raw;
+    }
+  }
+  EXPECT_EQ(kNibble.largest(), 9U);
+  EXPECT_EQ(kKnown.largest(), 255U);
+  EXPECT_EQ(kUnknown.largest(), 254U);
+  EXPECT_FALSE(kUnknown.admits(256));
+  EXPECT_FALSE(kKnown.admits(256));
+}
+
+}  // namespace
+}  // namespace pinjaw::wire
