@@ -22,23 +22,27 @@ static_assert(check_value_of<Crc8>("123456789") == 0xDF);
 static_assert(check_value_of<Crc16>("123456789") == 0xC2B7);
 static_assert(check_value_of<Crc32>("123456789") == 0xCBF43926);
 
-/// Every entry by long division, and a count of them.
-template <class Entry, std::size_t N>
-constexpr bool divides(const std::array<Entry, N>& table, Entry polynomial, bool reflected) {
-  constexpr unsigned kBits = sizeof(Entry) * 8;
+/// The checksum of each single byte, by long division.
+template <class Crc, class Rest>
+constexpr bool divides(Rest polynomial, Rest first, bool reflected) {
+  constexpr unsigned kBits = sizeof(Rest) * 8;
   for (unsigned byte = 0; byte < 256; ++byte) {
-    Entry rest = reflected ? static_cast<Entry>(byte) : static_cast<Entry>(Entry(byte) << (kBits - 8));
+    Rest rest =
+        static_cast<Rest>(first ^ (reflected ? Rest(byte) : static_cast<Rest>(Rest(byte) << (kBits - 8))));
     for (int bit = 0; bit < 8; ++bit) {
       const bool out = reflected ? (rest & 1U) != 0 : (rest >> (kBits - 1)) != 0;
-      rest = static_cast<Entry>(reflected ? rest >> 1 : rest << 1);
-      if (out) rest = static_cast<Entry>(rest ^ polynomial);
+      rest = static_cast<Rest>(reflected ? rest >> 1 : rest << 1);
+      if (out) rest = static_cast<Rest>(rest ^ polynomial);
     }
-    if (table[byte] != rest) return false;
+    Crc crc;
+    crc.add(static_cast<std::uint8_t>(byte));
+    if (crc.value() != static_cast<Rest>(~rest)) return false;
   }
-  return N == 256;
+  return true;
 }
-static_assert(divides<std::uint8_t>(detail::kCrc8Table, 0x2F, false));
-static_assert(divides<std::uint32_t>(detail::kCrc32Table, 0xEDB88320, true));
+static_assert(divides<Crc8, std::uint8_t>(0x2F, 0xFF, false));
+static_assert(divides<Crc16, std::uint16_t>(0x3D65, 0, false));
+static_assert(divides<Crc32, std::uint32_t>(0xEDB88320, 0xFFFFFFFF, true));
 
 static_assert(detail::same_text("", "") && detail::same_text("ab", "ab"));
 static_assert(!detail::same_text("ab", "abc") && !detail::same_text("abc", "ab"));
