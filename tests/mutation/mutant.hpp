@@ -5,7 +5,8 @@
 /// What the mutated copies of the portable code ask at every place where they can go wrong.
 ///
 /// All mutants live in one binary. A process is told which of them it is; in constant evaluation the code is
-/// what it was, so that a constexpr function mutates only where it runs; unless PINJAW_MUTANT names one, for a build of its own.
+/// what it was, so that a constexpr function mutates only where it runs; unless PINJAW_MUTANT names one, for
+/// a build of its own.
 namespace pinjaw::mutation {
 
 inline constexpr int kTable = 1 << 13;   ///< ids of mutants in the code are below
