@@ -158,7 +158,9 @@ TEST_P(AuthenticationOnVcan, arms_for_a_host_with_the_key_and_for_no_other) {
   LiveClient stranger(**bus, {.epoch = 0x4322});
   const jaw_client::Outcome refused = stranger.set_up(layout);
   EXPECT_FALSE(refused.done());
-  if (!can_fd) EXPECT_THAT(refused.sentence, HasSubstr("requires authentication"));
+  if (!can_fd) {
+    EXPECT_THAT(refused.sentence, HasSubstr("requires authentication"));
+  }
 }
 
 }  // namespace

@@ -231,7 +231,7 @@ TEST(ChainFit, does_not_depend_on_where_a_closed_chain_begins) {
   }
 }
 
-class Motion : public testing::TestWithParam<bool> {};
+class Motion : public ::testing::TestWithParam<bool> {};
 
 TEST_P(Motion, and_mirror_and_reversal_carry_the_pieces_along) {
   const bool mirrors = GetParam();
@@ -248,7 +248,7 @@ TEST_P(Motion, and_mirror_and_reversal_carry_the_pieces_along) {
   EXPECT_EQ(std::ranges::count_if(backwards, &FittedPiece::clockwise), mirrors ? 1 : 4);
 }
 
-INSTANTIATE_TEST_SUITE_P(Plane, Motion, testing::Bool());
+INSTANTIATE_TEST_SUITE_P(Plane, Motion, ::testing::Bool());
 
 /// Random tangent and cornered runs of segments and arcs, each with its own chording.
 TEST(ChainFit, finds_random_chains_again_from_both_ends) {
