@@ -12,9 +12,13 @@ namespace {
 
 using Occurrence = std::optional<Event>;
 
-constexpr std::uint16_t kContact_ms = 80;   // section 3: seat dwell
-constexpr std::uint16_t kBlocked_ms = 400;  // chosen: time for the push that breaks loose a jaw that sticks
-constexpr std::uint8_t kBadHold_ms = 3;     // I5
+constexpr std::uint16_t kContact_ms = 80;     // section 3: seat dwell
+constexpr std::uint16_t kBlocked_ms = 500;    // chosen: time for the push that breaks loose a jaw that sticks
+constexpr std::uint8_t kBadHold_ms = 3;       // I5
+constexpr std::uint16_t kStarved_ms = 500;    // chosen: six times the regulator's lag
+constexpr std::uint16_t kRefill_ms = 10'000;  // chosen: what one refill counts; a sound chamber cools once
+constexpr std::uint16_t kLeaks_ms =
+    40'000;  // chosen: five refills in ten seconds, or air wanted all the time
 
 /// Three quarters of F_light press: what stands still now is stopped by something.
 bool presses(const State& state) {
@@ -65,7 +69,7 @@ Occurrence in_seating(const State& state) {
     return Event::NoPart;
   if (separation_in_window(state)) {
     if (m.still_ms >= kContact_ms && presses(state)) return Event::Contact;
-  } else if (m.still_ms >= kBlocked_ms && presses(state)) {
+  } else if (state.control.blocked_ms >= kBlocked_ms && presses(state)) {
     return Event::Misseated;
   }
   return state.timers.state.running() ? std::nullopt : Occurrence(Event::Misseated);
@@ -201,6 +205,39 @@ void track_giver(State& state) {
   if (open && state.layouts.committed && clear_of_part(state)) state.receiving = {};
 }
 
+/// The model of a hold is a shut chamber: it neither asks for air again and again nor waits for it in vain.
+void track_air(State& state, std::uint16_t elapsed_ms) {
+  ForceControl& control = state.control;
+  const bool answers = holds(state.id) && state.id != StateId::FaultHold && state.id != StateId::Recover;
+  const bool asks = answers && hold_is_stable(state) && control.flow == Flow::Filling;
+  std::int32_t asked_ms = control.asked_ms + (asks ? 1 : -1) * static_cast<std::int32_t>(elapsed_ms);
+  if (asks && control.refilling) asked_ms += kRefill_ms;
+  control.asked_ms =
+      static_cast<std::uint16_t>(std::clamp<std::int32_t>(asked_ms, 0, kLeaks_ms + kRefill_ms));
+  const bool starves = answers && state.bad_hold_ms >= kBadHold_ms && control.flow == Flow::Filling &&
+                       !state.measurement.supply_low;
+  control.starved_ms = counted(control.starved_ms, starves, elapsed_ms);
+  if (control.asked_ms >= kLeaks_ms && is_news(state, wire::FaultCode::Leak))
+    raise(state, wire::FaultCode::Leak);
+  if (control.asked_ms == 0) state.faults.clear(wire::FaultCode::Leak);
+  if (control.starved_ms >= kStarved_ms && is_news(state, wire::FaultCode::ValveStuck)) {
+    raise(state, wire::FaultCode::ValveStuck);
+  }
+}
+
+/// The jaws' rest before they were told to close says nothing of what blocks them. A jaw that sticks and
+/// slips by turns keeps most of its push.
+void track_block(State& state, std::uint16_t elapsed_ms) {
+  std::uint16_t& blocked_ms = state.control.blocked_ms;
+  const bool told = state.id == StateId::Seating && !state.frozen && state.control.flow == Flow::Filling;
+  if (told && state.measurement.still_ms > 0) {
+    blocked_ms = counted(blocked_ms, true, elapsed_ms);
+  } else {
+    blocked_ms =
+        blocked_ms > elapsed_ms ? static_cast<std::uint16_t>(blocked_ms - elapsed_ms) : std::uint16_t{0};
+  }
+}
+
 void track_peer(State& state, std::uint16_t elapsed_ms) {
   if (state.id != StateId::Offered) return;
   if (peer_says(state, wire::Fact::Take)) state.answer_seen = true;
@@ -216,6 +253,8 @@ void track_peer(State& state, std::uint16_t elapsed_ms) {
 void track(State& state, std::uint16_t elapsed_ms) {
   track_hold(state, elapsed_ms);
   track_giver(state);
+  track_air(state, elapsed_ms);
+  track_block(state, elapsed_ms);
   track_peer(state, elapsed_ms);
   follow(state, wire::FaultCode::HostLost, !state.host.alive());
   follow(state, wire::FaultCode::SupplyAirLow, state.measurement.supply_low);

@@ -12,8 +12,9 @@ constexpr std::int32_t kIntegral_ms = 100;  // chosen: slower than the regulator
 constexpr std::int32_t kIntegralMost_ubar =
     300'000;  // chosen: 1 % linearity, 0.5 % hysteresis and sensor offsets
 constexpr std::int32_t kIntegralWindow_dn =
-    60;                                   // anti-windup: beyond it the feed-forward is still on its way
-constexpr std::uint16_t kStuck_ms = 100;  // chosen: a jaw that should move and does not
+    60;                                  // anti-windup: beyond it the feed-forward is still on its way
+constexpr std::int32_t kStuck_ms = 100;  // chosen: a jaw that should move and does not
+constexpr std::int32_t kPush_ms = 200;   // chosen: the push that breaks it loose grows for so long
 
 /// One step of the reference towards the set point.
 void follow_ramp(const State& state, std::int32_t set_dn, std::int32_t elapsed_ms, ForceControl& control) {
@@ -70,7 +71,9 @@ Valves regulate(State& state, std::int32_t set_dn, std::int32_t elapsed_ms) {
   const bool arrived = control.reference_dn == band.top_dn;
   if (arrived && control.flow == Flow::Filling)
     integrate(state, band.top_dn - measured_dn, elapsed_ms, control);
+  const bool shut = control.flow == Flow::Shut;
   switch_flow(band, measured_dn, !arrived && control.reference_dn < band.top_dn, control);
+  control.refilling = shut && arrived && control.flow == Flow::Filling;
 
   Valves valves;
   const std::int32_t open_mbar = state.measurement.open_ubar / 1000;
@@ -84,7 +87,7 @@ Valves regulate(State& state, std::int32_t set_dn, std::int32_t elapsed_ms) {
 }
 
 /// Closes on the part with the light squeeze. The open side's pressure brakes the jaws and is not made up
-/// for; only a jaw that sticks short of the part gets more, up to half the uncertainty.
+/// for; only a jaw that sticks short of the part gets more, up to the uncertainty.
 Valves approach(State& state, std::int32_t elapsed_ms) {
   const Measurement& m = state.measurement;
   if (separation_in_window(state) && m.still_ms > 0) return regulate(state, force_set_dn(state), elapsed_ms);
@@ -93,10 +96,11 @@ Valves approach(State& state, std::int32_t elapsed_ms) {
     valves.pre_vent = true;
     return valves;
   }
-  const bool stuck = m.still_ms > kStuck_ms && !separation_in_window(state);
-  const std::int32_t push_dn = stuck ? state.config.uncertainty_dn / 2 : 0;
-  const std::int32_t aim_mbar = pressure_mbar(state.config, force_set_dn(state) + push_dn, 0);
   state.control.reference_dn = force_set_dn(state);
+  const std::int32_t stuck_ms = std::clamp<std::int32_t>(state.control.blocked_ms - kStuck_ms, 0, kPush_ms);
+  const std::int32_t push_dn =
+      separation_in_window(state) ? 0 : state.config.uncertainty_dn * stuck_ms / kPush_ms;
+  const std::int32_t aim_mbar = pressure_mbar(state.config, force_set_dn(state) + push_dn, 0);
   state.control.flow = Flow::Filling;
   valves.spool = Spool::Close;
   valves.close_set_mbar =
@@ -150,7 +154,8 @@ Valves wanted_valves(State& state, std::uint32_t elapsed_ms) {
       if (state.store.record.custody == Custody::Decided) return Valves{.spool = Spool::Open};
       return open_while_permitted(state);
     case StateId::Seating:  // the way back must outlive a power cut before the jaws touch anything
-      return state.frozen || !state.store.durable() ? Valves{} : approach(state, ms);
+      return state.frozen || !state.store.durable() ? Valves{}
+                                                    : approach(state, ms);
     case StateId::Seated:
       return state.frozen ? Valves{} : regulate(state, force_set_dn(state), ms);
     case StateId::Squeezing:

@@ -27,9 +27,11 @@ SensorTrouble trouble_of(const Config& config, const Sensors& sensors) {
       return SensorTrouble::PressureRange;
     }
   }
-  const std::int32_t apart_mbar = sensors.close_mbar[0] - sensors.close_mbar[1];
-  if (apart_mbar > config.sensor_disagreement_mbar || apart_mbar < -config.sensor_disagreement_mbar) {
-    return SensorTrouble::Disagreement;
+  for (const std::array<std::int32_t, 2>& pair_mbar : {sensors.close_mbar, sensors.open_mbar}) {
+    const std::int32_t apart_mbar = pair_mbar[0] - pair_mbar[1];
+    if (apart_mbar > config.sensor_disagreement_mbar || apart_mbar < -config.sensor_disagreement_mbar) {
+      return SensorTrouble::Disagreement;
+    }
   }
   if (sensors.separation_10um < config.separation_min_10um - kOverTravel_10um ||
       sensors.separation_10um > config.separation_max_10um + kOverTravel_10um) {

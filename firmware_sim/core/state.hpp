@@ -72,6 +72,10 @@ struct ForceControl {
   Flow flow = Flow::Shut;
   std::int32_t reference_dn = 0;   ///< runs after the set point at the ramp's rate
   std::int32_t integral_ubar = 0;  ///< what the regulator needs beyond its set point
+  std::uint16_t blocked_ms = 0;    ///< SEATING: how long the jaws have stood still while air came
+  std::uint16_t starved_ms = 0;    ///< holding too weakly: how long air should have come
+  bool refilling = false;          ///< the chamber was opened in the last step to refill a hold
+  std::uint16_t asked_ms = 0;      ///< grows while a stable hold asks for air, falls while it does not
 };
 
 /// Times that remain.

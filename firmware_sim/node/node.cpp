@@ -49,12 +49,12 @@ Node::Node(const Figures& figures, std::uint64_t seed, bus::Bus& bus)
   truth_.separation_mm = figures.separation_max_mm;
 }
 
-bus::Expected<void> Node::step(const Surroundings& surroundings) {
+bus::Expected<void> Node::step(const Surroundings& surroundings, unsigned elapsed_ms) {
   bus::Expected<void> taken = take_frames();
   bus::Expected<void> sent;
-  if (powered_) sent = run_firmware(surroundings);
-  memory_.advance_ms(powered_ ? 1 : 0);
-  if (!figures_.passive) run_plant(surroundings);
+  if (powered_) sent = run_firmware(surroundings, elapsed_ms);
+  memory_.advance_ms(powered_ ? elapsed_ms : 0);
+  if (!figures_.passive) run_plant(surroundings, elapsed_ms);
   return taken ? sent : taken;
 }
 
@@ -106,12 +106,12 @@ core::Sensors Node::read_sensors(const Surroundings& surroundings) {
   return sensors;
 }
 
-bus::Expected<void> Node::run_firmware(const Surroundings& surroundings) {
+bus::Expected<void> Node::run_firmware(const Surroundings& surroundings, unsigned elapsed_ms) {
   if (board_ != nullptr) {
     valves_ = board_->exchange(read_sensors(surroundings));
     return {};
   }
-  const core::Outputs outputs = core::step(firmware_, {.elapsed_ms = 1,
+  const core::Outputs outputs = core::step(firmware_, {.elapsed_ms = elapsed_ms,
                                                        .received = received_,
                                                        .sensors = read_sensors(surroundings),
                                                        .nvm = memory_.status(),
@@ -128,20 +128,29 @@ bus::Expected<void> Node::run_firmware(const Surroundings& surroundings) {
   return result;
 }
 
-void Node::run_plant(const Surroundings& surroundings) {
-  const plant::Inputs inputs = {.actuation = actuation_of(valves_),
-                                .contact = surroundings.contact,
-                                .neighbour_moves = surroundings.neighbour_moves,
-                                .faults = faults_};
-  const bool rests = coasts_ && plant::at_rest(parameters_, inputs, plant_);
-  if (rests) plant::coast(parameters_, inputs, kPlantSteps * plant::kStep_s, plant_);
-  truth_.least_n = plant::squeeze_n(plant_);
-  truth_.most_n = truth_.least_n;
-  for (int i = 0; i < kPlantSteps && !rests; ++i) {
+void Node::run_plant_for_1_ms(const plant::Inputs& inputs) {
+  if (coasts_ && plant::at_rest(parameters_, inputs, plant_)) {
+    plant::coast(parameters_, inputs, kPlantSteps * plant::kStep_s, plant_);
+    const double squeeze_n = plant::squeeze_n(plant_);
+    truth_.least_n = std::min(truth_.least_n, squeeze_n);
+    truth_.most_n = std::max(truth_.most_n, squeeze_n);
+    return;
+  }
+  for (int i = 0; i < kPlantSteps; ++i) {
     plant::step(parameters_, inputs, plant::kStep_s, plant_);
     truth_.least_n = std::min(truth_.least_n, plant::squeeze_n(plant_));
     truth_.most_n = std::max(truth_.most_n, plant::squeeze_n(plant_));
   }
+}
+
+void Node::run_plant(const Surroundings& surroundings, unsigned elapsed_ms) {
+  const plant::Inputs inputs = {.actuation = actuation_of(valves_),
+                                .contact = surroundings.contact,
+                                .neighbour_moves = surroundings.neighbour_moves,
+                                .faults = faults_};
+  truth_.least_n = plant::squeeze_n(plant_);
+  truth_.most_n = truth_.least_n;
+  for (unsigned i = 0; i < elapsed_ms; ++i) run_plant_for_1_ms(inputs);
   truth_.left_n = plant_.left_n;
   truth_.right_n = plant_.right_n;
   truth_.squeeze_n = plant::squeeze_n(plant_);

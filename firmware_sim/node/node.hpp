@@ -51,9 +51,10 @@ class Node {
   /// Jaws fully open, powered, the memory never written. `bus` must outlive the node.
   Node(const Figures& figures, std::uint64_t seed, bus::Bus& bus);
 
-  /// Takes the frames that came, steps the firmware once, sends, and runs the plant for 1 ms. A failure of
-  /// the bus is handed back after all else was done: pneumatics do not wait for a bus.
-  bus::Expected<void> step(const Surroundings& surroundings);
+  /// Takes the frames that came, steps the firmware once, sends, and runs the plant for `elapsed_ms`. A
+  /// failure of the bus is handed back after all else was done: pneumatics do not wait for a bus. More than 1
+  /// ms is for nodes at which nothing happens: the firmware sees only the end of the step.
+  bus::Expected<void> step(const Surroundings& surroundings, unsigned elapsed_ms = 1);
 
   /// Off: the valves fall to rest and the firmware forgets what is not in its memory. On: it starts.
   void set_power(bool on);
@@ -76,14 +77,19 @@ class Node {
   core::Config& config_for_tests() { return config_; }
   /// Whether the plant takes 1 ms in one step while it is at rest, which saves fifty; off: never.
   void let_coast(bool on) { coasts_ = on; }
+  /// For tests only: what the firmware knows, to start its counters near their ends.
+  core::State& firmware_for_tests() { return firmware_; }
   /// For tests only: the hardware, before the first step.
   plant::Parameters& plant_for_tests() { return parameters_; }
+  /// For tests only: its state, before the first step.
+  plant::State& plant_state_for_tests() { return plant_; }
 
  private:
   bus::Expected<void> take_frames();
   [[nodiscard]] core::Sensors read_sensors(const Surroundings& surroundings);
-  bus::Expected<void> run_firmware(const Surroundings& surroundings);
-  void run_plant(const Surroundings& surroundings);
+  bus::Expected<void> run_firmware(const Surroundings& surroundings, unsigned elapsed_ms);
+  void run_plant(const Surroundings& surroundings, unsigned elapsed_ms);
+  void run_plant_for_1_ms(const plant::Inputs& inputs);
 
   Figures figures_;
   core::Config config_;

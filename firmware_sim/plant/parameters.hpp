@@ -28,8 +28,8 @@ enum class AirLaw : std::uint8_t {
 /// A keeper of 35 to 45 N (study) that always presses would exclude a light squeeze of 12 N, and would close
 /// the open jaws whenever their air is gone. So the keeper's spring stands behind a floating piston with a
 /// catch: a squeeze of `keeper_engage_share` times its force lets it go, air on the open side draws it back.
-/// Let go, it gives what the air lacks of `keeper_n` and nothing more, so that the controller need not know of
-/// it: what it infers from pressure is then low, never high. Its price: after RETAIN the receiver's light
+/// Let go, it gives what the air lacks of `keeper_n` and nothing more, so that the controller need not know
+/// of it: what it infers from pressure is then low, never high. Its price: after RETAIN the receiver's light
 /// squeeze is the keeper's until it opens.
 struct AirParameters {
   double close_area_m2 = 0;  ///< effective: sum of both jaws' force per Pa, lever losses included
@@ -39,7 +39,8 @@ struct AirParameters {
   double polytropic = 1.2;                          // the same: between 1.0 (slow) and 1.4 (fast)
   Restriction fill{0.01 * kDm3PerSecondBar, 0.3};   // the same: orifice in the close line, 0.45 N/ms at most
   Restriction relax{0.05 * kDm3PerSecondBar, 0.3};  // the same, throttled 5/2: the close chamber's way out
-  Restriction meter_out{0.02 * kDm3PerSecondBar, 0.3};  // the same: the open chamber's way out while closing
+  Restriction meter_out{0.01 * kDm3PerSecondBar, 0.3};  // the same: the open chamber's way out while closing;
+                                                        // 26 mm/s a jaw: the light touch presses under 60 N
   Restriction open_fill{0.05 * kDm3PerSecondBar, 0.3};  // as relax
   double check_cracking_pa = 0.2e5;                     // the same: pilot-operated check valve
   Restriction close_leak{0, 0.3};                       ///< this specimen's, close chamber to the room

@@ -25,14 +25,16 @@ World::World(const std::vector<Member>& members, std::uint64_t seed) {
   std::ranges::sort(stations_, {}, [](const Station& one) { return one.node->number(); });
 }
 
-bus::Expected<void> World::step() {
+bus::Expected<void> World::step(unsigned elapsed_ms) {
   bus::Expected<void> result;
   for (Station& one : stations_) {
-    const auto stepped = one.node->step(surroundings_of(one));
+    const auto stepped = one.node->step(surroundings_of(one), elapsed_ms);
     if (!stepped && result) result = stepped;
   }
-  ++elapsed_ms_;
-  observe();
+  for (unsigned i = 0; i < elapsed_ms; ++i) {
+    ++elapsed_ms_;
+    observe();
+  }
   return result;
 }
 

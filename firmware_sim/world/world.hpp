@@ -27,9 +27,9 @@ class World {
   /// its number, so that they do not depend on who else is there.
   World(const std::vector<Member>& members, std::uint64_t seed);
 
-  /// One millisecond of the whole cell. The first failure of a bus is handed back; the others' time passed
-  /// too.
-  bus::Expected<void> step();
+  /// One millisecond of the whole cell, or more of one where nothing happens. The first failure of a bus is
+  /// handed back; the others' time passed too.
+  bus::Expected<void> step(unsigned elapsed_ms = 1);
 
   /// Carries out a request now.
   bench::Reply handle(const bench::Request& request);

@@ -9,15 +9,16 @@ std::uint8_t node_id(int node) {
 
 }  // namespace
 
-void ScriptedHost::step() {
+void ScriptedHost::step(int elapsed_ms) {
+  const auto ms = static_cast<std::uint16_t>(elapsed_ms);
   while (true) {
     const auto next = bus_->receive();
     if (!next || !*next) break;
     hear((*next)->frame);
   }
-  say_heartbeat();
-  say_command();
-  say_segment();
+  say_heartbeat(ms);
+  say_command(ms);
+  say_segment(ms);
 }
 
 void ScriptedHost::send(int node, wire::Command command) {
@@ -85,8 +86,8 @@ void ScriptedHost::hear(const wire::Segment& segment) {
   }
 }
 
-void ScriptedHost::say_heartbeat() {
-  heartbeat_.advance(1);
+void ScriptedHost::say_heartbeat(std::uint16_t elapsed_ms) {
+  heartbeat_.advance(elapsed_ms);
   if (heartbeat_.running()) return;
   heartbeat_.start(wire::kHostHeartbeat_ms);
   const wire::HostHeartbeat message{.state = wire::HostState::Idle, .permit = permit_, .epoch = epoch_};
@@ -94,18 +95,18 @@ void ScriptedHost::say_heartbeat() {
   heartbeat_counter_ = static_cast<std::uint8_t>((heartbeat_counter_ + 1) % 15);
 }
 
-void ScriptedHost::say_command() {
+void ScriptedHost::say_command(std::uint16_t elapsed_ms) {
   if (!waiting_) return;
-  waiting_->repeat.advance(1);
+  waiting_->repeat.advance(elapsed_ms);
   if (waiting_->repeat.running()) return;
   waiting_->repeat.start(wire::kAcknowledge_ms);
   (void)bus_->send(wire::pack(waiting_->command, {.node = node_id(waiting_->node)}));
 }
 
-void ScriptedHost::say_segment() {
-  receiver_.advance(1);
+void ScriptedHost::say_segment(std::uint16_t elapsed_ms) {
+  receiver_.advance(elapsed_ms);
   if (!transfer_node_) return;
-  if (const auto segment = sender_.advance(1)) {
+  if (const auto segment = sender_.advance(elapsed_ms)) {
     (void)bus_->send(
         wire::pack_segment({{wire::MessageType::TransferRequest, node_id(*transfer_node_)}, *segment}));
   }

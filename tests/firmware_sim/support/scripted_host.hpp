@@ -30,7 +30,7 @@ class ScriptedHost {
   ScriptedHost(bus::Bus& bus, std::uint16_t epoch) : bus_(&bus), epoch_(epoch) {}
 
   /// One millisecond: hears, says its heartbeat, repeats an unanswered command.
-  void step();
+  void step(int elapsed_ms = 1);
 
   void send(int node, wire::Command command);
   void request(int node, std::vector<std::uint8_t> message);
@@ -57,9 +57,9 @@ class ScriptedHost {
   void hear(const wire::Segment& segment);
   template <class Message>
   void hear(const wire::Received<Message>& received);
-  void say_heartbeat();
-  void say_command();
-  void say_segment();
+  void say_heartbeat(std::uint16_t elapsed_ms);
+  void say_command(std::uint16_t elapsed_ms);
+  void say_segment(std::uint16_t elapsed_ms);
 
   bus::Bus* bus_;
   std::uint16_t epoch_;

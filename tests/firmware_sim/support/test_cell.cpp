@@ -85,7 +85,7 @@ std::vector<TestGrip> arm_pedestal_pallet() {
 
 TestCell::TestCell(std::vector<TestGrip> grips, std::uint64_t seed) : grips_(std::move(grips)) {
   bus_.on_frame([this](const bus::Received& received) {
-    frame_log_ += bus::to_log_line({received.time_us, "sim", received.frame}) + "\n";
+    if (keeps_logs_) frame_log_ += bus::to_log_line({received.time_us, "sim", received.frame}) + "\n";
   });
   std::vector<world::Member> members;
   for (const TestGrip& grip : grips_) {
@@ -93,18 +93,21 @@ TestCell::TestCell(std::vector<TestGrip> grips, std::uint64_t seed) : grips_(std
     members.push_back({figures_of(grip), ends_.back().get()});
   }
   world_ = std::make_unique<world::World>(members, seed);
-  world_->on_event([this](const std::string& line) { event_log_ += line + "\n"; });
+  world_->on_event([this](const std::string& line) {
+    if (keeps_logs_) event_log_ += line + "\n";
+  });
   host_end_ = bus_.open();
   host_ = std::make_unique<ScriptedHost>(*host_end_, std::uint16_t{0x1234});
 }
 
-void TestCell::advance() {
-  ++now_ms_;
-  if (const auto planned = planned_.find(now_ms_); planned != planned_.end()) planned->second();
-  bus_.advance_to(std::int64_t{1000} * now_ms_);
+void TestCell::advance(int elapsed_ms) {
+  now_ms_ += elapsed_ms;
+  if (const auto planned = planned_.find(now_ms()); planned != planned_.end()) planned->second();
+  bus_.advance_to(1000 * now_ms_);
   const bool killed = kill_at_ms_ && now_ms_ >= *kill_at_ms_;
-  if (!killed) host_->step();
-  (void)world_->step();
+  if (!killed) host_->step(elapsed_ms);
+  (void)world_->step(static_cast<unsigned>(elapsed_ms));
+  if (after_) after_();
   if (killed && now_ms_ == *kill_at_ms_) throw HostKilled();
 }
 

@@ -42,8 +42,12 @@ class TestCell {
  public:
   explicit TestCell(std::vector<TestGrip> grips, std::uint64_t seed = 1);
 
-  /// One millisecond of everything.
-  void advance();
+  /// One millisecond of everything; more of one only while nothing happens.
+  void advance(int elapsed_ms = 1);
+  /// Called after every advance().
+  void on_step(std::function<void()> after) { after_ = std::move(after); }
+  /// Off: neither log grows from now on.
+  void keep_logs(bool on) { keeps_logs_ = on; }
   void run_ms(int duration_ms);
   /// Whether `condition` came true within `at_most_ms`.
   bool run_until(const std::function<bool()>& condition, int at_most_ms);
@@ -71,7 +75,7 @@ class TestCell {
   [[nodiscard]] bench::Truth truth() const { return world_->truth(); }
   [[nodiscard]] const bench::NodeTruth& truth_of(int node);
   [[nodiscard]] wire::State state_of(int node) const;
-  [[nodiscard]] int now_ms() const { return now_ms_; }
+  [[nodiscard]] int now_ms() const { return static_cast<int>(now_ms_); }
   world::World& world() { return *world_; }
   ScriptedHost& host() { return *host_; }
   bus::SimBus& bus() { return bus_; }
@@ -91,7 +95,9 @@ class TestCell {
   bench::Truth last_truth_;
   std::optional<int> kill_at_ms_;
   std::map<int, std::function<void()>> planned_;
-  int now_ms_ = 0;
+  std::int64_t now_ms_ = 0;
+  bool keeps_logs_ = true;
+  std::function<void()> after_;
   std::string frame_log_;
   std::string event_log_;
 };

@@ -1,4 +1,4 @@
-// Promises: WORLD.
+// Promises: WORLD, SLIP.
 #include "firmware_sim/world/part_truth.hpp"
 
 #include <gtest/gtest.h>
