@@ -154,8 +154,7 @@ Valves wanted_valves(State& state, std::uint32_t elapsed_ms) {
       if (state.store.record.custody == Custody::Decided) return Valves{.spool = Spool::Open};
       return open_while_permitted(state);
     case StateId::Seating:  // the way back must outlive a power cut before the jaws touch anything
-      return state.frozen || !state.store.durable() ? Valves{}
-                                                    : approach(state, ms);
+      return state.frozen || !state.store.durable() ? Valves{} : approach(state, ms);
     case StateId::Seated:
       return state.frozen ? Valves{} : regulate(state, force_set_dn(state), ms);
     case StateId::Squeezing:

@@ -16,9 +16,9 @@ namespace {
 constexpr std::size_t kSendQueue = 256;
 constexpr std::size_t kReceiveQueue = 16384;
 constexpr std::int64_t kWindow_ns = 100'000'000;
-constexpr int kErrorFrameBits = 20;       // flags of all, delimiter, pause: 17 to 23 (ISO 11898-1, 10.4.4)
-constexpr int kSuspendBits = 8;           // after a frame of an error-passive sender (10.4.6.4)
-constexpr int kRecoverySequences = 128;   // of 11 recessive bits (12.1.4.4)
+constexpr int kErrorFrameBits = 20;      // flags of all, delimiter, pause: 17 to 23 (ISO 11898-1, 10.4.4)
+constexpr int kSuspendBits = 8;          // after a frame of an error-passive sender (10.4.6.4)
+constexpr int kRecoverySequences = 128;  // of 11 recessive bits (12.1.4.4)
 constexpr int kSequenceBits = 11;
 
 struct Waiting {
@@ -41,7 +41,7 @@ struct Station {
   ErrorCounters errors;
   std::int64_t suspended_until_ns = 0;
   bool recovers = false;
-  int sequences = 0;                ///< of recessive bits seen since restart(), in the stretches that ended
+  int sequences = 0;  ///< of recessive bits seen since restart(), in the stretches that ended
   std::int64_t recessive_since_ns = 0;  ///< the present stretch
 
   [[nodiscard]] bool wants(const wire::Frame& frame) const {

@@ -41,7 +41,8 @@ constexpr std::array kHelps = {
         FaultCode::CustodyMemory, "the record of who holds the part could not be stored or read",
         "worn or defective non-volatile memory",
         "support the part; pinjaw jaw clear tries the store again, and with the local enable on takes a part "
-        "without a record as this node's own; pinjaw jaw abort opens where the giver still has it; replace the "
+        "without a record as this node's own; pinjaw jaw abort opens where the giver still has it; replace "
+        "the "
         "controller if neither helps"},
     FaultHelp{FaultCode::LayoutRefused, "a layout that was sent does not fit this controller",
               "its force is over the limit, its kit is another, or its numbers disagree",

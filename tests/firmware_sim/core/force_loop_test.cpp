@@ -153,12 +153,16 @@ TEST(Approach, vents_the_open_side_first) {
   EXPECT_FALSE(valves.relax);
 }
 
-TEST(Approach, pushes_half_the_uncertainty_more_where_the_jaw_sticks) {
+TEST(Approach, pushes_harder_where_the_jaw_sticks_up_to_the_uncertainty) {
   State state = approaching();
-  state.measurement.still_ms = 100;
+  state.control.blocked_ms = 100;
   EXPECT_EQ(wanted(state).close_set_mbar, pressure_mbar(state.config, 120, 0) + 200);
-  state.measurement.still_ms = 101;
+  state.control.blocked_ms = 200;
   EXPECT_EQ(wanted(state).close_set_mbar, pressure_mbar(state.config, 180, 0) + 200);
+  for (const std::uint16_t blocked_ms : {std::uint16_t{300}, std::uint16_t{500}}) {
+    state.control.blocked_ms = blocked_ms;
+    EXPECT_EQ(wanted(state).close_set_mbar, pressure_mbar(state.config, 240, 0) + 200) << blocked_ms;
+  }
   state.config.pressure_max_mbar = 600;
   EXPECT_EQ(wanted(state).close_set_mbar, 600);
 }

@@ -128,15 +128,11 @@ TEST(Measure, a_pressure_out_of_range_is_trouble_after_3_ms_whichever_sensor_it_
   for (int sensor = 0; sensor < 4; ++sensor) {
     for (const auto& [reading_mbar, bad] :
          {std::pair{-700, false}, {-701, true}, {9900, false}, {9901, true}}) {
+      // its twin of the same chamber reads the last value that is believed
       Sensors sensors = at_rest();
-      sensors.close_mbar = {reading_mbar, reading_mbar};
-      sensors.open_mbar = {0, 0};
-      if (sensor >= 2) {
-        sensors = at_rest();
-        sensors.open_mbar[static_cast<std::size_t>(sensor - 2)] = reading_mbar;
-      } else if (bad) {
-        sensors.close_mbar[static_cast<std::size_t>(1 - sensor)] = reading_mbar < 0 ? -700 : 9900;
-      }
+      std::array<std::int32_t, 2>& chamber = sensor < 2 ? sensors.close_mbar : sensors.open_mbar;
+      chamber.fill(reading_mbar < 0 ? -700 : 9900);
+      chamber[static_cast<std::size_t>(sensor % 2)] = reading_mbar;
       EXPECT_EQ(trouble_with(sensors), bad ? SensorTrouble::PressureRange : SensorTrouble::None)
           << sensor << ' ' << reading_mbar;
     }

@@ -123,7 +123,8 @@ TEST(ImageOnCortexM4, makes_of_the_inputs_of_all_tests_of_the_core_what_the_host
   std::int64_t steps = 0;
   std::int64_t skipped = 0;
   std::ifstream(folder.path() / "trace.counts") >> lanes >> steps >> skipped;
-  EXPECT_LT(skipped * 10, steps) << "too many steps of mistaken tables or of controllers changed behind their back";
+  EXPECT_LT(skipped * 10, steps)
+      << "too many steps of mistaken tables or of controllers changed behind their back";
   const std::string told = contents(folder.path() / "told");
   EXPECT_EQ(number_after(told, "steps"), steps);
   const std::int64_t most = 40 * (number_after(told, "most_ticks") + 1);
