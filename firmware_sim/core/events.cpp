@@ -198,11 +198,12 @@ void track_hold(State& state, std::uint16_t elapsed_ms) {
   }
 }
 
-/// The part that another answers for is this node's concern until the jaws are away from it.
+/// The part that another answers for is this node's concern until the jaws are open: stopped on their way,
+/// air that is shut in closes them again.
 void track_giver(State& state) {
   if (giver_retains(state)) state.receiving.retained = true;
   const bool open = state.id == StateId::Loaded || state.id == StateId::Ready;
-  if (open && state.layouts.committed && clear_of_part(state)) state.receiving = {};
+  if (open && state.layouts.committed && fully_open(state)) state.receiving = {};
 }
 
 /// The model of a hold is a shut chamber: it neither asks for air again and again nor waits for it in vain.
