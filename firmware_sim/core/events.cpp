@@ -180,6 +180,11 @@ bool giver_stale(const State& state) {
   }
 }
 
+/// A node that answers for how well it holds: not one that only now finds out, or waits with a fault.
+bool answers_for_hold(StateId id) {
+  return holds(id) && id != StateId::FaultHold && id != StateId::Recover;
+}
+
 void track_hold(State& state, std::uint16_t elapsed_ms) {
   const bool gripping = holds(state.id) || state.id == StateId::Squeezing || state.id == StateId::Resqueeze;
   if (gripping && holds_well(state)) {
@@ -187,7 +192,7 @@ void track_hold(State& state, std::uint16_t elapsed_ms) {
   } else {
     state.timers.stable.start(state.layouts.layout.stable_ms);
   }
-  const bool answers = holds(state.id) && state.id != StateId::FaultHold && state.id != StateId::Recover;
+  const bool answers = answers_for_hold(state.id);
   const bool bad = answers && !holds_enough(state);
   state.bad_hold_ms =
       bad ? static_cast<std::uint8_t>(std::min<std::int32_t>(state.bad_hold_ms + elapsed_ms, 100))
@@ -209,7 +214,7 @@ void track_giver(State& state) {
 /// The model of a hold is a shut chamber: it neither asks for air again and again nor waits for it in vain.
 void track_air(State& state, std::uint16_t elapsed_ms) {
   ForceControl& control = state.control;
-  const bool answers = holds(state.id) && state.id != StateId::FaultHold && state.id != StateId::Recover;
+  const bool answers = answers_for_hold(state.id);
   const bool asks = answers && hold_is_stable(state) && control.flow == Flow::Filling;
   std::int32_t asked_ms = control.asked_ms + (asks ? 1 : -1) * static_cast<std::int32_t>(elapsed_ms);
   if (asks && control.refilling) asked_ms += kRefill_ms;
