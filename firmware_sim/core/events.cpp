@@ -106,7 +106,8 @@ Occurrence in_offered(const State& state) {
   const bool unanswered = !state.host.alive() && !state.answer_seen;
   if (!state.timers.state.running() || unanswered) return Event::OfferUnanswered;
   if (state.bad_hold_ms >= kBadHold_ms) return Event::HoldLost;
-  if (state.announced.fact == wire::Fact::Offer && !state.timers.peer_good.running()) return Event::PeerHolds;
+  const bool good = !state.timers.peer_good.running() && sees_peer_hold(state.release_guard, state.config);
+  if (state.announced.fact == wire::Fact::Offer && good) return Event::PeerHolds;
   return while_held(state);
 }
 

@@ -138,6 +138,10 @@ void watch(ReleaseGuard& guard, const Config& config, const Release& release,
   if (!guard.asked.running()) guard.hand_permits = false;
 }
 
+bool sees_peer_hold(const ReleaseGuard& guard, const Config& config) {
+  return guard.good_ms > 0 || !config.release_guard_enabled;
+}
+
 bool permits_release(const ReleaseGuard& guard, const Config& config, const NvmRecord& record) {
   if (!config.release_guard_enabled) return true;
   return guard.peer_permits && guard.peer == record.peer && guard.token == record.token;

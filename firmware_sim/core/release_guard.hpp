@@ -17,7 +17,7 @@ namespace pinjaw::core {
 
 /// The handoff in which this node may let go, as the record tells it.
 struct Release {
-  std::uint8_t peer = 0;  ///< 15: the operator
+  std::uint8_t peer = 0;  ///< 15: the operator; 0: none is under way
   std::uint16_t token = 0;
   std::uint16_t pair = 0;
   std::uint16_t peer_required_dn = 0;  ///< F_req of the peer's layout
@@ -50,6 +50,9 @@ ReleaseGuard guard_after_reset(const NvmRecord& record);
 /// Takes in one step's frames, in order of arrival, and lets time pass.
 void watch(ReleaseGuard& guard, const Config& config, const Release& release,
            std::span<const wire::Frame> received, bool local_enable, std::uint16_t elapsed_ms);
+
+/// The giver's force may go down to that of RELAX: its peer says now that it holds.
+bool sees_peer_hold(const ReleaseGuard& guard, const Config& config);
 
 /// The handoff of `record` may be decided: its peer was seen to hold.
 bool permits_release(const ReleaseGuard& guard, const Config& config, const NvmRecord& record);

@@ -60,7 +60,8 @@ struct Listener {
 Release release_of(const State& state) {
   const NvmRecord& record = state.store.record;
   const wire::LayoutPeer* peer = state.layouts.committed ? state.layouts.layout.peer(record.peer) : nullptr;
-  return {.peer = record.peer,
+  const bool under_way = record.custody == Custody::Offered || record.custody == Custody::Decided;
+  return {.peer = under_way ? record.peer : std::uint8_t{0},
           .token = record.token,
           .pair = record.pair,
           .peer_required_dn = peer == nullptr ? std::uint16_t{0} : peer->f_required_dn,

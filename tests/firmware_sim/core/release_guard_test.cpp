@@ -36,6 +36,18 @@ struct TwoChannels : testing::Test {
   bool drops_within(int ms) {
     return bench.run_until(ms, [&] { return bench.arm().jaw.squeeze_dn() == 0; });
   }
+  /// The pedestal takes what the arm offers; both channels of the arm see it from now on.
+  void let_pedestal_take() {
+    bench.load_gripper(kArm);
+    bench.arm_session(kPedestal);
+    bench.bring_part(kPedestal, true);
+    bench.command(kArm, wire::offer_command(kPedestal));
+    bench.run(100);
+    bench.command(kPedestal, wire::accept_command(kArm));
+    ASSERT_TRUE(bench.reaches(kPedestal, StateId::Seated));
+    bench.command(kPedestal, wire::squeeze_command({520, 1400}));
+    ASSERT_TRUE(bench.reaches(kPedestal, StateId::Taken));
+  }
   StateTable table = kStateTable;
   Bench bench;
 };
@@ -65,6 +77,31 @@ TEST_F(TwoChannels, hold_though_the_state_machine_decides_without_a_peer) {
     bench = Bench();
     bench.load_all();
   }
+}
+
+TEST_F(TwoChannels, keep_the_full_force_until_both_see_the_peer_hold) {
+  let_pedestal_take();
+  for (int ms = 0; ms < 500; ++ms) {
+    bench.arm().core.release_guard.peer_faulty.start(100);
+    bench.run(1);
+    ASSERT_EQ(bench.arm().id(), StateId::Offered) << ms << " ms";
+  }
+  bench.arm().core.release_guard.peer_faulty.stop();
+  EXPECT_TRUE(bench.reaches(kArm, StateId::Relax, 200));
+}
+
+TEST_F(TwoChannels, hold_though_the_state_machine_opens_on_a_permit_of_a_handoff_that_was_taken_back) {
+  let_pedestal_take();
+  ASSERT_TRUE(bench.reaches(kArm, StateId::Relax));
+  bench.arm().core.release_guard.peer_permits = true;
+  bench.arm_session(kArm);
+  bench.command(kArm, wire::plain_command(wire::Op::Abort));
+  ASSERT_TRUE(bench.reaches(kArm, StateId::Hold));
+  ASSERT_TRUE(bench.reaches(kPedestal, StateId::Seated));
+  mistake(with(StateId::Hold, Event::CmdDisarm, Cell::Op), true);
+  bench.command(kArm, wire::plain_command(wire::Op::Disarm));
+  ASSERT_EQ(bench.arm().id(), StateId::Opening);
+  EXPECT_FALSE(drops_within(3000));
 }
 
 TEST_F(TwoChannels, open_after_a_restart_in_the_middle_of_a_decided_opening) {

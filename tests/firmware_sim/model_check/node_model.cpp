@@ -117,6 +117,7 @@ LocalId NodeModel::intern(Local& local) {
   if (is_new) {
     packed_.push_back(&place->first);
     traits_.push_back(traits_of(local));
+    chatter_.emplace_back();
     repeats_.emplace_back();
   }
   return place->second;
@@ -124,7 +125,9 @@ LocalId NodeModel::intern(Local& local) {
 
 Traits NodeModel::traits_of(const Local& local) const {
   const NvmRecord& wanted = local.core.store.record;
-  Traits traits{.holds = local.grip == Grip::Full && answers(local) && setup_.node != setup_.misfit,
+  const bool grips = local.grip == Grip::Full && setup_.node != setup_.misfit;
+  Traits traits{.grips = grips,
+                .holds = grips && answers(local),
                 .stored = traits_of_record(local.stored),
                 .wanted = traits_of_record(wanted)};
   if (local.pending_count > 0 || local.core.store.record_waits) return traits;
@@ -308,6 +311,16 @@ const std::vector<Move>& NodeModel::moves(LocalId id, int message, bool peer_hol
   if (known != moves_.end()) return known->second;
   std::vector<Move> found = work_out(id, message, peer_holds);
   return moves_.emplace(key, std::move(found)).first->second;
+}
+
+Said NodeModel::chatter(LocalId id) {
+  if (chatter_[id]) return *chatter_[id];
+  Said said = 0;
+  for (const Move& move : moves(id, -1, false)) {
+    if (move.next == id && !move.stimulus.is_mishap()) said |= move.said;
+  }
+  chatter_[id] = said;
+  return said;
 }
 
 Said NodeModel::repeats(LocalId id) {

@@ -35,7 +35,8 @@ struct Traits {
     std::uint16_t token = 0;
     std::array<Outcome, 4> outcomes{};
   };
-  bool holds = false;          ///< grips with F_req and answers for it
+  bool grips = false;          ///< its jaws hold the part with F_req
+  bool holds = false;          ///< grips and answers for it
   bool rests_holding = false;  ///< quiescent, with the part
   bool rests_empty = false;    ///< quiescent, without it
   Record stored;               ///< what a power cut leaves
@@ -65,6 +66,8 @@ class NodeModel {
   const std::vector<Move>& moves(LocalId id, int message, bool peer_holds);
 
   [[nodiscard]] const Traits& traits(LocalId id) const { return traits_[id]; }
+  /// What the node may say as often as it likes without change to itself.
+  Said chatter(LocalId id);
   /// What the node repeats by itself in this state.
   Said repeats(LocalId id);
   [[nodiscard]] std::string describe(LocalId id) const;
@@ -101,6 +104,7 @@ class NodeModel {
   std::unordered_map<Packed, LocalId> ids_;
   std::vector<const Packed*> packed_;
   std::vector<Traits> traits_;
+  std::vector<std::optional<Said>> chatter_;
   std::vector<std::optional<Said>> repeats_;
   std::unordered_map<std::uint64_t, std::vector<Move>> moves_;
   std::uint64_t steps_ = 0;

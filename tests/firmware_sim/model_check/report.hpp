@@ -15,6 +15,8 @@ inline void state_figures(const std::string& cell, const Findings& findings) {
   figure("states", findings.states, "states");
   figure("transitions", findings.transitions, "transitions");
   figure("states of single nodes", findings.node_states, "states");
+  if (findings.distinct_node_states > 0)
+    figure("of these, such that somebody could tell apart", findings.distinct_node_states, "states");
   figure("calls of step()", findings.steps, "calls");
   figure("processor time", findings.cpu_s, "s");
   figure("memory", findings.memory_bytes >> 20, "MiB");

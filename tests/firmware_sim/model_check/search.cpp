@@ -6,6 +6,7 @@
 #include <ctime>
 #include <stdexcept>
 
+#include "tests/firmware_sim/model_check/equals.hpp"
 #include "tests/firmware_sim/model_check/state_set.hpp"
 #include "tests/firmware_sim/model_check/words.hpp"
 
@@ -32,6 +33,7 @@ class Search {
 
   Findings run() {
     const double start_s = cpu_now_s();
+    if (bounds_.merge_equals) merge_equals();
     explore();
     if (!findings_.violation && findings_.complete && (bounds_.invariants & kWayBack) != 0) look_back();
     findings_.states = states_.size();
@@ -45,6 +47,28 @@ class Search {
   }
 
  private:
+  void merge_equals() {
+    for (std::size_t index = 0; index < models_.size(); ++index) first_state_of(index);
+    work_out_all(models_, network_);
+    for (const auto& model : models_) {
+      equals_.push_back(first_equals(*model, network_));
+      std::vector<LocalId> distinct = equals_.back();
+      std::ranges::sort(distinct);
+      findings_.distinct_node_states +=
+          static_cast<std::size_t>(std::ranges::unique(distinct).begin() - distinct.begin());
+    }
+  }
+
+  LocalId first_state_of(std::size_t index) {
+    NodeModel& model = *models_[index];
+    return model.node() == scenario_.loaded ? model.loaded() : model.ready();
+  }
+
+  /// What stands for the node's state `id` in the search.
+  [[nodiscard]] LocalId merged(std::size_t index, LocalId id) const {
+    return equals_.empty() ? id : equals_[index][id];
+  }
+
   struct Taken {
     std::size_t index = 0;  ///< of the node
     const Move* move = nullptr;
@@ -60,9 +84,10 @@ class Search {
       const LocalId id = state.node(index);
       const auto all = [&](int message, bool peer_holds, Said needed) {
         for (const Move& move : model.moves(id, message, peer_holds)) {
-          if (move.next >> Global::kBits != 0) throw std::length_error("too many states of one node");
-          Global next = state.with(index, move.next);
-          next.said |= move.said;
+          const LocalId to = merged(index, move.next);
+          if (to >> Global::kBits != 0) throw std::length_error("too many states of one node");
+          Global next = state.with(index, to);
+          next.said |= move.said | model.chatter(to);
           if (!visit(next, Taken{.index = index, .move = &move, .needed = needed})) return false;
         }
         return true;
@@ -83,8 +108,8 @@ class Search {
   void explore() {
     Global first;
     for (std::size_t index = 0; index < models_.size(); ++index) {
-      const bool loaded = scenario_.nodes[index] == scenario_.loaded;
-      first = first.with(index, loaded ? models_[index]->loaded() : models_[index]->ready());
+      first = first.with(index, merged(index, first_state_of(index)));
+      first.said |= models_[index]->chatter(first.node(index));
     }
     for (const Saying& saying : scenario_.history) {
       const std::optional<int> bit = saying.holds_well ? network_.heard(saying.node, saying.state)
@@ -127,12 +152,16 @@ class Search {
     return models_[index]->traits(state.node(index));
   }
 
-  [[nodiscard]] std::optional<Invariant> wrong_in(const Global& state) const {
-    if (asks(kHeld)) {
-      bool held = false;
-      for (std::size_t index = 0; index < models_.size(); ++index) held = held || traits(state, index).holds;
-      if (!held) return kHeld;
+  [[nodiscard]] bool any(const Global& state, bool Traits::*what) const {
+    for (std::size_t index = 0; index < models_.size(); ++index) {
+      if (traits(state, index).*what) return true;
     }
+    return false;
+  }
+
+  [[nodiscard]] std::optional<Invariant> wrong_in(const Global& state) const {
+    if (asks(kHeld) && !any(state, &Traits::holds)) return kHeld;
+    if (asks(kGripped) && !any(state, &Traits::grips)) return kGripped;
     if (asks(kOneCustodian) &&
         (custodians(state, &Traits::stored) != 1 || custodians(state, &Traits::wanted) != 1))
       return kOneCustodian;
@@ -277,6 +306,7 @@ class Search {
   Bounds bounds_;
   Network network_;
   std::vector<std::unique_ptr<NodeModel>> models_;
+  std::vector<std::vector<LocalId>> equals_;  ///< of each node, where equal states count as one
   StateSet states_;
   Findings findings_;
 };
@@ -287,6 +317,8 @@ std::string name_of(Invariant invariant) {
   switch (invariant) {
     case kHeld:
       return "I2";
+    case kGripped:
+      return "the part is gripped";
     case kOneCustodian:
       return "I2b";
     case kWayBack:

@@ -21,6 +21,7 @@ enum Invariant : std::uint8_t {
   kTakesLatched = 8,  ///< R1: no TAKE without its stored latch
   kWayBack = 16,      ///< I2c: a quiescent state can be reached without further mishap
   kAllInvariants = 31,
+  kGripped = 32,  ///< what is left of I2 where the first channel is mistaken: some jaws grip, whoever answers
 };
 
 std::string name_of(Invariant invariant);
@@ -38,7 +39,8 @@ struct Scenario {
 struct Bounds {
   std::size_t most_states = 4'000'000;
   std::uint8_t invariants = kAllInvariants;
-  bool progress = false;  ///< a line on stderr now and then
+  bool merge_equals = false;  ///< equal states of a node count as one: pays where the search is long
+  bool progress = false;      ///< a line on stderr now and then
 };
 
 struct Violation {
@@ -51,9 +53,10 @@ struct Findings {
   bool complete = false;  ///< nothing was left out for `most_states`
   std::size_t states = 0;
   std::uint64_t transitions = 0;
-  std::size_t resting = 0;      ///< quiescent states
-  std::size_t node_states = 0;  ///< different states of single nodes
-  std::uint64_t steps = 0;      ///< calls of core::step()
+  std::size_t resting = 0;               ///< quiescent states
+  std::size_t node_states = 0;           ///< different states of single nodes
+  std::size_t distinct_node_states = 0;  ///< of these, where equals count as one
+  std::uint64_t steps = 0;               ///< calls of core::step()
   double cpu_s = 0;
   std::size_t memory_bytes = 0;  ///< of states, parents and the set
 };
