@@ -1,9 +1,11 @@
 // Runs the tests of wire and core once for each mutant, each in a process of its own.
 //
 //     mutants                    the tests themselves, without any mutant
-//     mutants --reach FILE       which mutants each test comes by, and its CPU time
-//     mutants --kill PLAN FILE   PLAN: lines `id test:test:...`, quick ones first; FILE gets `id verdict ms
-//     test` lines
+//     mutants --reach FILE       which mutants each test comes by, and its CPU time; tests of over a second
+//                                are left out: they would cost more than they tell
+//     mutants --kill PLAN FILE   PLAN: lines `id test=ms test=ms ...`, quick ones first, ms being the CPU
+//     time
+//                                without a mutant; FILE gets `id verdict ms test` lines
 //
 // A mutant is killed by a test that fails, crashes or runs out of CPU time.
 #include <gtest/gtest.h>
@@ -13,6 +15,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -21,6 +24,7 @@
 #include <sstream>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "tests/mutation/mutant.hpp"
@@ -32,8 +36,9 @@ unsigned char reached[kTable + kPlaces];
 
 namespace {
 
-constexpr int kCpuLimit_s =
-    3;  // every test takes well under a second of it; a mutant's endless loop does not
+constexpr double kLongest_ms = 1000;  // of a test that is used
+constexpr double kLimit_ms = 1000;    // with kSlower times what a test takes: past it, it never ends
+constexpr double kSlower = 10;
 
 std::vector<std::string> all_tests() {
   std::vector<std::string> names;
@@ -62,9 +67,15 @@ void be_quiet() {
     std::_Exit(2);
 }
 
-void limit_cpu() {
-  const rlimit seconds{kCpuLimit_s, kCpuLimit_s + 1};
-  setrlimit(RLIMIT_CPU, &seconds);
+/// From now on; SIGPROF ends the process then.
+void limit_cpu_to(double ms) {
+  itimerval timer{};
+  timer.it_value.tv_sec = static_cast<time_t>(ms / 1000);
+  timer.it_value.tv_usec = static_cast<suseconds_t>(ms * 1000) % 1'000'000;
+  setitimer(ITIMER_PROF, &timer, nullptr);
+}
+
+void limit_memory() {
   const rlimit core{0, 0};
   setrlimit(RLIMIT_CORE, &core);
   const rlimit bytes{rlim_t{2} << 30, rlim_t{2} << 30};
@@ -87,6 +98,7 @@ int reach(const char* file) {
     const pid_t child = fork();
     if (child == 0) {
       be_quiet();
+      limit_cpu_to(kLongest_ms);
       std::memset(reached, 0, sizeof reached);
       const bool good = pass(name);
       const ssize_t written = write(ends[1], reached, sizeof reached);
@@ -104,6 +116,7 @@ int reach(const char* file) {
     int status = 0;
     rusage usage{};
     wait4(child, &status, 0, &usage);
+    if (WIFSIGNALED(status) && WTERMSIG(status) == SIGPROF) continue;
     if (status != 0) {
       std::fprintf(stderr, "mutants: %s fails without any mutant\n", name.c_str());
       bad = 1;
@@ -119,15 +132,16 @@ int reach(const char* file) {
 
 struct Job {
   int id = 0;
-  std::vector<std::string> tests;
+  std::vector<std::pair<std::string, double>> tests;  ///< with CPU times in ms
 };
 
 /// In a child: which test kills, as an exit code for the parent and a name through `note`.
 [[noreturn]] void be_mutant(const Job& job, int note) {
   be_quiet();
-  limit_cpu();
+  limit_memory();
   chosen = job.id;
-  for (const std::string& test : job.tests) {
+  for (const auto& [test, ms] : job.tests) {
+    limit_cpu_to(kLimit_ms + kSlower * ms);
     const auto begun = write(note, (test + "\n").c_str(), test.size() + 1);
     if (begun < 0 || !pass(test)) std::_Exit(1);
   }
@@ -136,7 +150,7 @@ struct Job {
 
 const char* verdict_of(int status) {
   if (WIFEXITED(status)) return WEXITSTATUS(status) == 0 ? "survived" : "failed";
-  return WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL ? "endless" : "crashed";
+  return WTERMSIG(status) == SIGPROF ? "endless" : "crashed";
 }
 
 int kill_all(const char* plan, const char* file) {
@@ -146,7 +160,10 @@ int kill_all(const char* plan, const char* file) {
     std::istringstream words(line);
     Job job;
     words >> job.id;
-    for (std::string test; words >> test;) job.tests.push_back(test);
+    for (std::string test; words >> test;) {
+      const std::size_t equals = test.rfind('=');
+      job.tests.emplace_back(test.substr(0, equals), std::atof(test.c_str() + equals + 1));
+    }
     jobs.push_back(job);
   }
   std::ofstream out(file);

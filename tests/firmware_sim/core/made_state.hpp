@@ -44,4 +44,33 @@ inline void squeeze_with(State& state, std::int32_t measured_dn) {
   state.measurement.squeeze = {measured_dn, measured_dn - 120, measured_dn + 120};
 }
 
+/// Jaws that hold 52 N at contact for long enough, with every time limit running.
+inline State held(StateId id) {
+  State state = made(id);
+  squeeze_with(state, 520);
+  state.timers.state.start(1);
+  state.timers.peer_good.start(1);
+  state.receiving.giver = wire::kOperatorPeer;
+  return state;
+}
+
+/// Has latched token 7 of the pedestal, which says `fact` of it.
+inline State taken(wire::Fact fact) {
+  State state = held(StateId::Taken);
+  state.store.record = {.custody = Custody::Latched, .peer = kPedestal, .token = 7, .pair = 8};
+  state.receiving = {.giver = kPedestal, .token = 7, .pair = 8};
+  hear_peer(state, kPedestal, {.fact = fact, .peer = kArm, .token = 7, .pair = 8, .f_low_n = 40});
+  return state;
+}
+
+/// Has offered token 7 to the pedestal, which says that it took it, and holds.
+inline State offering(StateId id) {
+  State state = held(id);
+  state.store.record = {.custody = Custody::Offered, .peer = kPedestal, .token = 7, .pair = 8};
+  state.announced = {wire::Fact::Offer, kPedestal, 7, 8};
+  hear_peer(state, kPedestal, {.fact = wire::Fact::Take, .peer = kArm, .token = 7, .pair = 8, .f_low_n = 40},
+            {.state = StateId::Taken, .hold_stable = true, .f_low_dn = 400});
+  return state;
+}
+
 }  // namespace pinjaw::core::test

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <initializer_list>
 #include <vector>
 
 #include "protocol/wire/names.hpp"
@@ -92,6 +93,61 @@ const std::vector<Row>& specified() {
   return rows;
 }
 
+constexpr std::uint32_t only(std::initializer_list<StateId> states) {
+  std::uint32_t bits = 0;
+  for (const StateId state : states) bits |= 1U << static_cast<unsigned>(state);
+  return bits;
+}
+
+constexpr std::uint32_t all_but(std::initializer_list<StateId> states) {
+  return ~only(states) & ((1U << kStates) - 1);
+}
+
+/// The states that heed an event and stay what they are: a bit for each.
+std::uint32_t heeding(Event event) {
+  switch (event) {
+    case Event::CmdHold:
+      return all_but({Squeezing, Offered, Relax});
+    case Event::CmdWrite:
+    case Event::CmdDisarm:
+      return only({Unconfigured, Loaded});
+    case Event::CmdCommit:
+      return only({Loaded});
+    case Event::CmdArm:
+      return all_but({Boot, Unconfigured});
+    case Event::CmdArmReady:
+      return all_but({Boot, Unconfigured, Loaded});
+    case Event::CmdAbort:
+      return only({Ready});
+    case Event::CmdOpenEmpty:
+      return only({Ready, FaultEmpty});
+    case Event::CmdClearFault:
+      return all_but({Boot, FaultHold, FaultEmpty});
+    case Event::CmdManualAsk:
+      return only({Hold});
+    case Event::OverForce:
+      return only({Seating, Seated, Taken, Hold, Offered, Relax, Resqueeze});
+    case Event::Slip:
+      return only({Taken, Hold, Offered});
+    case Event::HoldLost:
+      return only({Taken, Hold});
+    case Event::Opened:
+      return only({FaultEmpty});
+    case Event::SensorFault:
+      return only({Recover, Unconfigured, Loaded, Taken, Resqueeze, Opening, FaultHold, FaultEmpty});
+    case Event::StoreFault:
+      return only({Recover, Unconfigured, Loaded, Taken, Resqueeze, FaultHold, FaultEmpty});
+    case Event::HostLost:
+      return all_but({Boot, Ready, Squeezing});
+    case Event::PeerLost:
+      return only({Seating, Seated, Squeezing, Taken, Offered});
+    case Event::PeerSilent:
+      return only({Taken});
+    default:
+      return 0;
+  }
+}
+
 const Row* find(StateId state, Event event) {
   for (const Row& row : specified()) {
     if (row.state == state && row.event == event) return &row;
@@ -130,6 +186,17 @@ TEST(StateTable, refuses_every_command_that_is_not_listed) {
       EXPECT_NE(kind, ReactionKind::Ignored) << wire::to_string(state) << " " << static_cast<int>(event);
     } else {
       EXPECT_NE(kind, ReactionKind::Refused) << wire::to_string(state) << " " << static_cast<int>(event);
+    }
+  });
+}
+
+TEST(StateTable, heeds_without_a_change_of_state_what_is_listed_and_nothing_else) {
+  for_every_pair([](StateId state, Event event) {
+    const Reaction what = reaction(kStateTable, state, event);
+    EXPECT_EQ(what.kind == ReactionKind::Stay, (heeding(event) & only({state})) != 0)
+        << wire::to_string(state) << " " << static_cast<int>(event);
+    if (what.kind != ReactionKind::Go) {
+      EXPECT_EQ(what.next, state) << wire::to_string(state) << " " << static_cast<int>(event);
     }
   });
 }
