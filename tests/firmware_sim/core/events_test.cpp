@@ -258,11 +258,18 @@ TEST(NextEvent, while_offered_is_the_receivers_hold_or_that_nobody_answers) {
                            s.bad_hold_ms = 3;
                            s.faults.raise(FaultCode::HoldLost);
                          }},
-                        {Event::PeerHolds, [](State& s) { s.timers.peer_good.stop(); }},
-                        {std::nullopt, [](State& s) {
+                        {std::nullopt, [](State& s) { s.timers.peer_good.stop(); }},
+                        {Event::PeerHolds,
+                         [](State& s) {
                            s.timers.peer_good.stop();
-                           s.announced.fact = wire::Fact::Sole;
-                         }}});
+                           s.config.release_guard_enabled = false;
+                         }},
+                        {std::nullopt, [](State& s) { s.release_guard.good_ms = 1; }}});
+  State seen = state;
+  seen.timers.peer_good.stop();
+  seen.release_guard.good_ms = 1;
+  expect_events(seen, {{Event::PeerHolds, [](State&) {}},
+                       {std::nullopt, [](State& s) { s.announced.fact = wire::Fact::Sole; }}});
 }
 
 TEST(NextEvent, while_relaxing_is_the_end_of_the_watch_that_both_channels_saw_or_a_doubt) {
