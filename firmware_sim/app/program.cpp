@@ -24,10 +24,10 @@ std::int64_t now_ns() {
   return now.tv_sec * kNs_per_s + now.tv_nsec;
 }
 
-/// Sleeps until then, or until a signal.
-void sleep_until(std::int64_t time_ns) {
-  const timespec until{.tv_sec = time_ns / kNs_per_s, .tv_nsec = time_ns % kNs_per_s};
-  clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
+/// Sleeps so long, or until a signal.
+void sleep_for(std::int64_t time_ns) {
+  const timespec time{.tv_sec = time_ns / kNs_per_s, .tv_nsec = time_ns % kNs_per_s};
+  nanosleep(&time, nullptr);
 }
 
 void tell(const std::string& text) {
@@ -83,20 +83,29 @@ void Program::run(const std::atomic<bool>& stop) {
   Pace pace(now_ns());
   std::int64_t tell_ns = pace.next_ns() + kTellEvery_ns;
   while (!stop) {
-    int due = pace.due(now_ns());
-    do {
-      for (int i = 0; i < kStepsBetweenServing && due > 0 && !stop; ++i, --due) step();
-      if (server_) server_->serve([this](const bench::Request& request) { return world_.handle(request); });
-    } while (due > 0 && !stop);
+    // The clock is read once: what the steps take makes the next ones start so much later, but adds up to
+    // nothing.
+    const std::int64_t now = now_ns();
+    int due = pace.due(now);
+    while (due > kStepsBetweenServing && !stop) {
+      for (int i = 0; i < kStepsBetweenServing; ++i, --due) step();
+      serve(0);
+    }
+    for (; due > 0 && !stop; --due) step();
     if (pace.next_ns() >= tell_ns) {
       tell_troubles();
       tell_ns = pace.next_ns() + kTellEvery_ns;
     }
-    sleep_until(pace.next_ns());
+    serve(pace.next_ns() - now);
   }
   tell_troubles();
   if (pace.given_up_ms() > 0)
     tell(fmt::format("{} ms were never simulated: too far behind", pace.given_up_ms()));
+}
+
+void Program::serve(std::int64_t patience_ns) {
+  if (!server_) return sleep_for(patience_ns);
+  server_->serve([this](const bench::Request& request) { return world_.handle(request); }, patience_ns);
 }
 
 void Program::step() {

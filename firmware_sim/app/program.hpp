@@ -34,6 +34,8 @@ class Program {
 
  private:
   void step();
+  /// Answers requests to the world; where there are none, waits for one so long.
+  void serve(std::int64_t patience_ns);
   void start_faults();
   /// Tells of each node's bus what has gone wrong there, where that is more than was told last.
   void tell_troubles();

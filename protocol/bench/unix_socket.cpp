@@ -17,6 +17,7 @@ namespace {
 constexpr std::size_t kPacketBytes = 65536;  // chosen: a truth of 14 nodes takes about 5 kB
 constexpr int kReplyTimeout_ms = 5000;       // chosen: a world answers within its 1 ms loop
 constexpr int kBacklog = 8;
+constexpr std::int64_t kNs_per_s = 1'000'000'000;
 
 Trouble trouble(const std::string& path, const std::string& what) {
   return {path + ": " + what + ": " + std::strerror(errno)};
@@ -112,10 +113,11 @@ SocketServer::~SocketServer() {
   unlink(path_.c_str());
 }
 
-int SocketServer::serve(const Handler& handler) {
+int SocketServer::serve(const Handler& handler, std::int64_t patience_ns) {
   std::vector<pollfd> waiting = {{.fd = listener_, .events = POLLIN, .revents = 0}};
   for (const int client : clients_) waiting.push_back({.fd = client, .events = POLLIN, .revents = 0});
-  if (poll(waiting.data(), waiting.size(), 0) <= 0) return 0;
+  const timespec patience{.tv_sec = patience_ns / kNs_per_s, .tv_nsec = patience_ns % kNs_per_s};
+  if (ppoll(waiting.data(), waiting.size(), &patience, nullptr) <= 0) return 0;
   int answered = 0;
   for (std::size_t i = 1; i < waiting.size(); ++i) {
     if (waiting[i].revents == 0) continue;

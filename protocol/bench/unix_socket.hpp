@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -36,8 +37,9 @@ class SocketServer {
   ~SocketServer();
 
   /// Answers what has arrived, then returns; gives the number of requests answered. A line that is no request
-  /// is answered with Refused.
-  int serve(const Handler& handler);
+  /// is answered with Refused. Where nothing has arrived, waits for it `patience_ns` at most, or until a
+  /// signal.
+  int serve(const Handler& handler, std::int64_t patience_ns = 0);
 
  private:
   SocketServer(std::string path, int listener) : path_(std::move(path)), listener_(listener) {}

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <deque>
 #include <functional>
 #include <memory>
 #include <string>
@@ -51,7 +52,10 @@ class SocketBus final : public bus::Bus {
 
  private:
   SocketBus(int descriptor, std::string interface, const Settings& settings);
-  bus::Expected<void> flush();
+  /// Asks the kernel for what has come, many frames in one call: on User-Mode Linux a call may take 0.1 ms.
+  bus::Expected<void> refill();
+  /// Sends what waits; `now_us` as Settings::now_us tells it.
+  bus::Expected<void> flush(std::int64_t now_us);
   /// What an errno means; from now on every call gives it.
   tl::unexpected<bus::Failure> fail(int error);
   WriteResult write(const wire::Frame& frame);
@@ -64,6 +68,9 @@ class SocketBus final : public bus::Bus {
   std::optional<bus::Failure> failed_;
   ControllerWatch watch_;
   bus::Statistics statistics_;
+  std::deque<bus::Received> inbox_;  ///< taken from the kernel, not yet given
+  bool drained_ = false;             ///< the kernel had no more when the inbox was filled
+  std::uint32_t overflow_ = 0;       ///< what the socket had no room for, up to the last frame in the inbox
 };
 
 /// The failure that `error`, an errno, means for a person who wanted to use `interface`.

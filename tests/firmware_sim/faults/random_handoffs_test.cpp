@@ -85,8 +85,12 @@ class Relay {
     return answer && answer->result == wire::CommandResult::Ok;
   }
 
+  /// A refused session is opened anew, as a host does: an ARM that comes late, after others, ends the one it
+  /// opened.
   bool ask(std::uint8_t node, const wire::Command& command) {
-    return bench_.result_of(node, command) == wire::CommandResult::Ok;
+    const wire::CommandResult result = bench_.result_of(node, command);
+    if (result == wire::CommandResult::BadSession) bench_.arm_session(node);
+    return result == wire::CommandResult::Ok;
   }
 
   /// The receiver holds alone. The giver may have lost its host meanwhile.

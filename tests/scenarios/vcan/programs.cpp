@@ -19,7 +19,7 @@ namespace pinjaw::scenario {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr std::chrono::milliseconds kPoll(20);
+constexpr std::chrono::milliseconds kPoll(50);
 
 /// Short, as the path of a socket must be, and nobody else's, also where process numbers repeat (User-Mode
 /// Linux).
@@ -32,20 +32,28 @@ std::string new_folder() {
 std::vector<std::string> jaw_command(const std::vector<std::string>& names, const std::string& interface,
                                      const std::string& path) {
   std::vector<std::string> command = {test::program("pinjaw-jaw")};
-  for (const std::string& name : names) command.push_back(config("controllers/" + name + ".yaml"));
+  for (const std::string& name : names) {
+    const bool is_path = name.find('/') != std::string::npos;
+    command.push_back(is_path ? name : config("controllers/" + name + ".yaml"));
+  }
   command.insert(command.end(), {"--bus", "can:" + interface, "--world", path});
   return command;
 }
 
+/// `descriptor` writes to a file from now on, where one is named.
+bool redirect(int descriptor, const std::string& path) {
+  if (path.empty()) return true;
+  constexpr mode_t kReadable = 0644;
+  const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC, kReadable);
+  return file >= 0 && dup2(file, descriptor) >= 0;
+}
+
 }  // namespace
 
-Process::Process(std::vector<std::string> command, const std::string& output) : child_(fork()) {
+Process::Process(std::vector<std::string> command, const std::string& output, const std::string& errors)
+    : child_(fork()) {
   if (child_ != 0) return;
-  if (!output.empty()) {
-    constexpr mode_t kReadable = 0644;
-    const int file = open(output.c_str(), O_WRONLY | O_CREAT | O_TRUNC, kReadable);
-    if (file < 0 || dup2(file, STDOUT_FILENO) < 0) _exit(126);
-  }
+  if (!redirect(STDOUT_FILENO, output) || !redirect(STDERR_FILENO, errors)) _exit(126);
   std::vector<char*> arguments;
   for (std::string& word : command) arguments.push_back(word.data());
   arguments.push_back(nullptr);
@@ -74,19 +82,23 @@ int Process::wait(std::chrono::seconds patience) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
-int pinjaw(std::vector<std::string> arguments, const std::string& output) {
+int pinjaw(std::vector<std::string> arguments, const std::string& output, const std::string& errors) {
   arguments.insert(arguments.begin(), test::program("pinjaw"));
   arguments.insert(arguments.end(), {"--bus", "can:vcan0"});
-  return Process(std::move(arguments), output).wait();
+  return Process(std::move(arguments), output, errors).wait();
+}
+
+bool shell(const std::string& command) {
+  return std::system(("PATH=$PATH:/usr/sbin:/sbin; " + command).c_str()) == 0;
 }
 
 Controllers::Controllers(const std::vector<std::string>& names, const std::string& interface)
-    : path_(new_folder() + "/world"), program_(jaw_command(names, interface, path_)) {
+    : path_(new_folder() + "/world"), program_(jaw_command(names, interface, path_), "", path_ + ".said") {
   for (int tries = 0; tries < 1000 && !world_; ++tries) {
     if (auto world = bench::SocketWorld::connect(path_)) world_ = std::move(*world);
     std::this_thread::sleep_for(kPoll);
   }
-  if (!world_) throw std::runtime_error("pinjaw-jaw does not serve its world");
+  if (!world_) throw std::runtime_error("pinjaw-jaw does not serve its world: " + said());
 }
 
 Controllers::~Controllers() {
@@ -94,6 +106,19 @@ Controllers::~Controllers() {
   program_.wait();
   std::error_code ignored;
   std::filesystem::remove_all(std::filesystem::path(path_).parent_path(), ignored);
+}
+
+std::string Controllers::said() const {
+  return content(path_ + ".said");
+}
+
+bool Controllers::tells(const std::string& text, std::chrono::seconds patience) const {
+  const auto give_up = Clock::now() + patience;
+  while (said().find(text) == std::string::npos) {
+    if (Clock::now() > give_up) return false;
+    std::this_thread::sleep_for(kPoll);
+  }
+  return true;
 }
 
 bench::Reply Controllers::ask(const bench::Request& request) {

@@ -18,8 +18,9 @@ inline const std::string kOut = OUT_DIR;  ///< where the plans are that the test
 /// A program of its own, killed where it outlives this.
 class Process {
  public:
-  /// `output`: file for stdout; empty: this one's.
-  explicit Process(std::vector<std::string> command, const std::string& output = {});
+  /// `output`, `errors`: files for stdout and stderr; empty: this one's.
+  explicit Process(std::vector<std::string> command, const std::string& output = {},
+                   const std::string& errors = {});
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
   ~Process();
@@ -33,17 +34,26 @@ class Process {
 };
 
 /// Runs `pinjaw ARGUMENTS --bus can:vcan0` to its end and gives its exit code.
-int pinjaw(std::vector<std::string> arguments, const std::string& output = {});
+int pinjaw(std::vector<std::string> arguments, const std::string& output = {},
+           const std::string& errors = {});
 
-/// pinjaw-jaw with controllers of configs/controllers on an interface, and its world.
+/// Whether a shell, as root of the machine, did it.
+bool shell(const std::string& command);
+
+/// pinjaw-jaw with controllers on an interface, and its world.
 class Controllers {
  public:
+  /// `names`: files of configs/controllers, such as "arm", or paths.
   explicit Controllers(const std::vector<std::string>& names, const std::string& interface = "vcan0");
   Controllers(const Controllers&) = delete;
   Controllers& operator=(const Controllers&) = delete;
   ~Controllers();
 
   [[nodiscard]] const std::string& world_path() const { return path_; }
+  /// What pinjaw-jaw told on stderr so far.
+  [[nodiscard]] std::string said() const;
+  /// Whether it comes to tell that. It does once a second.
+  bool tells(const std::string& text, std::chrono::seconds patience = std::chrono::seconds(20)) const;
   /// Throws where the world does not do it.
   bench::Reply ask(const bench::Request& request);
   bench::Truth truth() { return std::get<bench::Truth>(ask(bench::AskTruth{})); }
