@@ -18,6 +18,9 @@ namespace pinjaw::wire {
 inline constexpr std::size_t kMaxTransferBytes = 256;
 inline constexpr std::uint16_t kTransferTimeout_ms = 200;  ///< N_Bs and N_Cr
 inline constexpr std::uint8_t kSegmentGap_ms = 5;          ///< STmin that we ask for and keep at least
+/// STmin runs from a segment's last bit, our count from when it is queued: its own 0.27 ms of bus, rounded
+/// up.
+inline constexpr std::uint8_t kSegmentOnBus_ms = 1;
 inline constexpr std::uint8_t kBlockSize = 8;
 inline constexpr std::uint8_t kMaxWaits = 3;
 inline constexpr std::uint8_t kPadding = 0xCC;
@@ -288,7 +291,7 @@ class TransferSender {
     } else if (!unlimited_ && --block_left_ == 0) {
       wait();
     } else {
-      timer_.start(gap_ms_);
+      timer_.start(static_cast<std::uint16_t>(gap_ms_ + kSegmentOnBus_ms));
     }
     return segment;
   }

@@ -25,6 +25,8 @@ Payload flow(unsigned status, unsigned block, unsigned gap) {
           static_cast<std::uint8_t>(gap)};
 }
 
+constexpr std::uint16_t kGap_ms = kSegmentGap_ms + kSegmentOnBus_ms;  ///< from segment to segment
+
 TransferSender sending(std::size_t size) {
   TransferSender sender;
   EXPECT_TRUE(sender.start(numbered(size)));
@@ -70,13 +72,13 @@ TEST(TransferSender, numbers_its_segments_from_1_to_15_and_round_to_0) {
   sender.advance(0);
   sender.accept(flow(0, 0, 0));
   for (unsigned i = 1; i <= 27; ++i) {
-    const auto segment = sender.advance(i == 1 ? 0 : 5);
+    const auto segment = sender.advance(i == 1 ? 0 : kGap_ms);
     ASSERT_TRUE(segment.has_value()) << i;
     EXPECT_EQ((*segment)[0], 0x20U | (i & 0xFU));
     EXPECT_EQ((*segment)[1], 7 * i);
   }
   EXPECT_TRUE(sender.busy());
-  const auto last = sender.advance(5);
+  const auto last = sender.advance(kGap_ms);
   ASSERT_TRUE(last.has_value());
   EXPECT_EQ((*last)[5], 200);
   EXPECT_EQ((*last)[6], 0xCC);
@@ -89,7 +91,7 @@ TEST(TransferSender, stops_after_each_block_and_goes_on_when_told_to) {
   for (const unsigned block : {3U, 1U, 2U}) {
     sender.accept(flow(0, block, 5));
     for (unsigned i = 0; i < block; ++i)
-      ASSERT_TRUE(sender.advance(i == 0 ? 0 : 5).has_value()) << block << ' ' << i;
+      ASSERT_TRUE(sender.advance(i == 0 ? 0 : kGap_ms).has_value()) << block << ' ' << i;
     EXPECT_FALSE(sender.advance(5).has_value()) << "after a block of " << block;
     EXPECT_FALSE(sender.advance(194).has_value());
     EXPECT_TRUE(sender.busy()) << "199 ms after the block";
@@ -107,7 +109,8 @@ TEST(TransferSender, keeps_the_gap_that_it_was_asked_for_but_five_milliseconds_a
     sender.advance(0);
     sender.accept(flow(0, 0, asked));
     ASSERT_TRUE(sender.advance(0).has_value());
-    EXPECT_FALSE(sender.advance(static_cast<std::uint16_t>(kept_ms - 1)).has_value()) << asked;
+    EXPECT_FALSE(sender.advance(static_cast<std::uint16_t>(kept_ms)).has_value())
+        << asked << ", and the frame";
     EXPECT_TRUE(sender.advance(1).has_value()) << asked;
   }
 }
@@ -142,7 +145,7 @@ TEST(TransferSender, takes_no_leave_while_it_streams_nor_from_what_is_no_flow_co
   sender.accept(flow(2, 0, 0));
   EXPECT_TRUE(sender.busy()) << "streaming";
   sender.accept(flow(0, 0, 0));
-  EXPECT_FALSE(sender.advance(19).has_value()) << "the gap is still the first one's";
+  EXPECT_FALSE(sender.advance(20).has_value()) << "the gap is still the first one's";
   EXPECT_TRUE(sender.advance(1).has_value());
 }
 
@@ -327,6 +330,7 @@ TEST(TransferLimits, are_those_of_the_specification) {
   EXPECT_EQ(kMaxTransferBytes, 256U);
   EXPECT_EQ(kTransferTimeout_ms, 200);
   EXPECT_EQ(kSegmentGap_ms, 5);
+  EXPECT_EQ(kSegmentOnBus_ms, 1);
   EXPECT_EQ(kBlockSize, 8);
   EXPECT_EQ(kMaxWaits, 3);
 }

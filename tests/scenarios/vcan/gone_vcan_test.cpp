@@ -24,16 +24,16 @@ INSTANTIATE_TEST_SUITE_P(Ways, InterfaceGone, testing::Values("ip link set vcan0
 
 TEST_P(InterfaceGone, in_a_run_ends_it_with_exit_code_5_and_the_part_stays_held) {
   Controllers controllers({"arm", "pedestal", "pallet"});
-  const std::string errors = kOut + "/gone.txt";
+  const std::string told = kOut + "/gone.txt";
   Process host({test::program("pinjaw"), "run", test::source_dir("tests/scenarios/vcan/handoffs.yaml"),
                 "--plan", kOut + "/cell.json", "--world", controllers.world_path(), "--bus", "can:vcan0"},
-               "/dev/null", errors);
+               told);
   const auto arm_touches = [](const bench::Truth& truth) { return truth.nodes.at(0).touches; };
   ASSERT_TRUE(controllers.comes_true(arm_touches, std::chrono::seconds(60)));
   ASSERT_TRUE(shell(GetParam()));
-  EXPECT_EQ(host.wait(std::chrono::seconds(60)), 5) << content(errors);
-  EXPECT_THAT(content(errors), HasSubstr("vcan0"));
-  EXPECT_TRUE(controllers.tells("the CAN interface vcan0")) << controllers.said();
+  EXPECT_EQ(host.wait(std::chrono::seconds(60)), 5) << content(told);
+  EXPECT_THAT(content(told), HasSubstr("CAN interface vcan0")) << "the step that it ended tells why";
+  EXPECT_TRUE(controllers.tells("CAN interface vcan0")) << controllers.said();
 
   const bench::Truth truth = controllers.truth();
   EXPECT_FALSE(truth.dropped);

@@ -1,4 +1,4 @@
-// Promises: AUTH-VCAN, E2E-VCAN.
+// Promises: AUTH-VCAN.
 // A cell whose controllers share a key with their host, on a real vcan, classic and CAN FD: pinjaw and
 // pinjaw-jaw play handoffs with it; a pinjaw that has no key, or another one, is told so, ends with exit code
 // 4 or 5 and changes nothing.
