@@ -5,9 +5,9 @@
 
 namespace pinjaw::core {
 
-void save(Store& store, const NvmRecord& record) {
-  store.record = record;
+NvmRecord& to_store(Store& store) {
   store.record_waits = true;
+  return store.record;
 }
 
 void acknowledge(Store& store, const NvmStatus& status) {

@@ -8,8 +8,9 @@
 /// same: first the record is stored, then the bus hears the fact, then the valves follow.
 namespace pinjaw::core {
 
-/// Asks for `record` to be stored.
-void save(Store& store, const NvmRecord& record);
+/// The record, for a change that is to be stored with this step. Changed in its place: a copy is an eighth of
+/// a controller's stack.
+NvmRecord& to_store(Store& store);
 
 /// Takes in how far storing has come.
 void acknowledge(Store& store, const NvmStatus& status);

@@ -44,10 +44,8 @@ struct Listener {
   void operator()(const wire::Received<wire::FaultReport>& fault) const { from_peer(fault); }
 
   /// What no controller acts on.
-  void operator()(const wire::Received<wire::HostTime>&) const {}
-  template <class Message>
-  void operator()(const wire::Received<Message>& other) const {
-    if (is_mine(other.label.node)) raise(state, wire::FaultCode::OwnIdSeen);
+  void operator()(const wire::Unread& other) const {
+    if (is_mine(other.identifier.node)) raise(state, wire::FaultCode::OwnIdSeen);
   }
 
   template <class Message>
@@ -154,7 +152,7 @@ void power_on(const Config& config, const NvmImage& image, State& state) {
   start_link(state, record);
   if (image.readable) {
     restore_layout(state, image.layout);
-    save(state.store, record);
+    to_store(state.store) = record;
   }
   state.timers.force.start(wire::kForceOffset_ms + 1);  // the first STATE goes out after 1 ms
 }

@@ -66,13 +66,12 @@ void remember_outcome(NvmRecord& record, bool retained) {
 }
 
 void record_custody(State& state, Custody custody) {
-  NvmRecord record = state.store.record;
+  NvmRecord& record = to_store(state.store);
   record.custody = custody;
   if (custody == Custody::Released || custody == Custody::Retained)
     remember_outcome(record, custody == Custody::Retained);
   record.force_set_dn = state.force_set_dn;
   record.permit_dn = state.permit_dn;
-  save(state.store, record);
 }
 
 /// Where slip counts from: the grip as it is now.
@@ -120,7 +119,7 @@ void enter_seating(State& state) {
   state.opening_wanted = false;
   state.control = {};
   state.timers.state.start(move_time_ms(state, state.layouts.layout.separation_contact_10um));
-  NvmRecord record = state.store.record;
+  NvmRecord& record = to_store(state.store);
   record.custody = Custody::Empty;
   record.peer = state.receiving.giver;  // who answers for the part that the jaws now close on
   record.token = state.receiving.token;
@@ -128,7 +127,6 @@ void enter_seating(State& state) {
   if (state.receiving.giver != wire::kOperatorPeer) {
     remember_token(record, state.receiving.giver, state.receiving.token);
   }
-  save(state.store, record);
 }
 
 void enter_seated(State& state, StateId from, Event event) {

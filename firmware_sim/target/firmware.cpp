@@ -7,10 +7,10 @@
 
 namespace pinjaw::firmware {
 
-void boot(core::State& fresh, Work& work) {
+void boot(core::State& fresh, core::NvmImage& memory) {
   board::start();
-  board::read_memory(work.memory);
-  core::power_on(board::config(), work.memory, fresh);
+  board::read_memory(memory);
+  core::power_on(board::config(), memory, fresh);
 }
 
 void turn(core::State& state, Work& work) {

@@ -1,8 +1,11 @@
 // The firmware's only static objects and its only endless loop.
+#include <optional>
+
 #include "firmware_sim/target/firmware.hpp"
 
 namespace {
-constinit pinjaw::core::State state;
+// Made when power comes: its defaults would lie in flash as well as in memory.
+constinit std::optional<pinjaw::core::State> state;
 constinit pinjaw::firmware::Room room;
 }  // namespace
 
@@ -10,6 +13,6 @@ constinit pinjaw::firmware::Room room;
 extern "C" [[noreturn]] void firmware_main();
 
 void firmware_main() {
-  pinjaw::firmware::boot(state, room.work);
-  for (;;) pinjaw::firmware::turn(state, room.work);
+  pinjaw::firmware::boot(state.emplace(), room.memory);
+  for (;;) pinjaw::firmware::turn(*state, room.work);
 }

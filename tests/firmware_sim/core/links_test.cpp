@@ -250,7 +250,7 @@ TEST(Store, is_durable_when_what_was_asked_for_last_is_done) {
   EXPECT_TRUE(store.readable);
   NvmRecord record;
   record.token = 9;
-  save(store, record);
+  to_store(store) = record;
   EXPECT_FALSE(store.durable());
   std::optional<NvmWrite> write;
   flush(store, wire::Layout{}, write);

@@ -56,7 +56,7 @@ TEST_P(Image, stays_within_flash_memory_and_stack_and_links_no_heap) {
   const auto report = report_of(name);
   EXPECT_LE(report.at("flash"), 32768);
   EXPECT_LE(report.at("ram"), 4096);
-  EXPECT_LE(report.at("stack"), name == "replay-m4" ? 768 : 832);
+  EXPECT_LE(report.at("stack"), 768);
   EXPECT_TRUE(report.at("troubles").empty()) << report.at("troubles");
   for (const char* what : {"flash", "ram", "stack"}) {
     test::figure("I9", name + ": " + what, report.at(what).get<std::int64_t>(), "B");

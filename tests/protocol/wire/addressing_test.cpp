@@ -111,6 +111,29 @@ TEST(Dispatch, says_what_was_wrong_and_calls_no_one) {
   EXPECT_TRUE(times.empty());
 }
 
+/// Reads nothing but NodeState.
+struct Sparing {
+  std::map<MessageType, int>& read;
+  std::map<MessageType, int>& unread;
+  void operator()(const Received<NodeState>&) const { ++read[MessageType::State]; }
+  void operator()(const Segment&) const {}
+  void operator()(const Unread& other) const { ++unread[other.identifier.type]; }
+};
+
+TEST(Dispatch, leaves_the_fields_alone_of_what_its_handler_does_not_read_but_not_the_checksum) {
+  std::map<MessageType, int> read;
+  std::map<MessageType, int> unread;
+  const Sparing sparing{read, unread};
+  EXPECT_FALSE(dispatch(pack(NodeState{}, {.node = 1}), sparing));
+  EXPECT_FALSE(dispatch(pack(Force{}, {.node = 1}), sparing));
+  EXPECT_FALSE(dispatch(pack(Identity{}, {.node = 1}), sparing));
+  Frame frame = pack(Force{}, {.node = 1});
+  frame.data[7] ^= 1U;
+  EXPECT_EQ(dispatch(frame, sparing), FrameError::Checksum);
+  EXPECT_EQ(read, (std::map<MessageType, int>{{MessageType::State, 1}}));
+  EXPECT_EQ(unread, (std::map<MessageType, int>{{MessageType::Force, 1}, {MessageType::Identity, 1}}));
+}
+
 TEST(Segments, come_back_as_they_were_sent) {
   const Segment sent{{MessageType::TransferResponse, 9}, {1, 2, 3, 4, 5, 6, 7, 8}};
   const Frame frame = pack_segment(sent);
