@@ -65,16 +65,27 @@ int configure(int descriptor, const Settings& settings) {
   return 0;
 }
 
+/// 0 where there is none. Not by if_nametoindex() or SIOCGIFINDEX, with which the kernel, for a privileged
+/// caller, starts two processes to look for a module of that name, each time, where there is no such
+/// interface.
+int index_of(const std::string& interface) {
+  const std::unique_ptr<struct if_nameindex, decltype(&if_freenameindex)> all(::if_nameindex(),
+                                                                              if_freenameindex);
+  const struct if_nameindex* one = all.get();
+  while (one != nullptr && one->if_index != 0 && interface != one->if_name) ++one;
+  return one == nullptr ? 0 : static_cast<int>(one->if_index);
+}
+
 /// Binds to `interface` and makes sure that it is up. Gives an errno, or 0.
 int attach(int descriptor, const std::string& interface) {
   if (interface.empty() || interface.size() >= IFNAMSIZ) return ENODEV;
-  ifreq request{};
-  std::memcpy(request.ifr_name, interface.data(), interface.size());
-  if (::ioctl(descriptor, SIOCGIFINDEX, &request) != 0) return errno;
   sockaddr_can address{};
   address.can_family = AF_CAN;
-  address.can_ifindex = request.ifr_ifindex;
+  address.can_ifindex = index_of(interface);
+  if (address.can_ifindex == 0) return ENODEV;
   if (::bind(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) return errno;
+  ifreq request{};
+  std::memcpy(request.ifr_name, interface.data(), interface.size());
   if (::ioctl(descriptor, SIOCGIFFLAGS, &request) != 0) return errno;
   return (request.ifr_flags & IFF_UP) != 0 ? 0 : ENETDOWN;
 }
