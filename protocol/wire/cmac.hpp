@@ -16,7 +16,7 @@ constexpr void to_next_subkey(AesBlock& block) {
   const unsigned carried_out = block.front() >> 7;
   for (std::size_t i = 0; i < block.size(); ++i) {
     const unsigned carry = i + 1 < block.size() ? block[i + 1] >> 7 : 0U;
-    block[i] = static_cast<std::uint8_t>((block[i] << 1) | carry);
+    block[i] = static_cast<std::uint8_t>((unsigned{block[i]} << 1U) | carry);
   }
   block.back() ^= static_cast<std::uint8_t>(carried_out * 0x87);
 }

@@ -6,12 +6,25 @@
 #include <memory>
 #include <new>
 #include <optional>
+#include <stdexcept>
 
 #include "firmware_sim/target/firmware.hpp"
 #include "firmware_sim/target/trace.hpp"
 
 namespace pinjaw::core::test {
 namespace {
+
+#if defined(__has_builtin) && __has_builtin(__builtin_clear_padding)
+template <class T>
+void clear_padding(T& value) {
+  __builtin_clear_padding(&value);
+}
+constexpr bool kRecords = true;
+#else  // Clang 14, which builds the fuzzers
+template <class T>
+void clear_padding(T&) {}
+constexpr bool kRecords = false;
+#endif
 
 /// A state as its default makes it, where all memory was `fill` before.
 std::array<std::uint8_t, sizeof(State)> state_in(std::uint8_t fill) {
@@ -31,7 +44,7 @@ trace::StateMask mask_of_state() {
   State state;
   const std::span<std::uint8_t> bytes = trace::bytes_of(state);
   std::ranges::fill(bytes, std::uint8_t{0xFF});
-  __builtin_clear_padding(&state);
+  clear_padding(state);
   const auto leave_out = [](std::span<std::uint8_t> optional) {
     std::ranges::fill(optional, std::uint8_t{0});
   };
@@ -76,6 +89,8 @@ void write_file(const std::string& path, const std::vector<const std::vector<std
 Recorder* Recorder::wanted() {
   static const std::unique_ptr<Recorder> recorder = []() -> std::unique_ptr<Recorder> {
     const char* folder = std::getenv("PINJAW_TRACE");
+    if (folder != nullptr && !kRecords)
+      throw std::runtime_error("PINJAW_TRACE: this compiler clears no padding");
     return folder == nullptr ? nullptr : std::make_unique<Recorder>(folder);
   }();
   return recorder.get();
@@ -83,7 +98,7 @@ Recorder* Recorder::wanted() {
 
 Recorder::Key Recorder::key_of(const State& state) {
   Config config = state.config;
-  __builtin_clear_padding(&config);
+  clear_padding(config);
   const auto bytes = trace::bytes_of(std::as_const(config)).first(trace::kConfigBytes);
   return {Bytes(bytes.begin(), bytes.end()), trace::digest_of(state, kMask)};
 }
@@ -123,7 +138,7 @@ void Recorder::after(const Inputs& inputs, const Outputs& outputs, const State& 
   Into given{lane.given};
   trace::Writer<Into> in{given};
   Inputs copy = inputs;
-  __builtin_clear_padding(&copy);
+  clear_padding(copy);
   in.byte(trace::kStep);
   in.raw(inputs.elapsed_ms);
   given.put(trace::tail_of(copy));

@@ -52,7 +52,7 @@ TEST(CleaningOnVcan, a_host_killed_in_the_middle_of_a_handoff_leaves_the_part_he
   const auto arm_and_pedestal_touch = [](const bench::Truth& truth) {
     return truth.nodes.at(0).touches && truth.nodes.at(1).touches;
   };
-  ASSERT_TRUE(controllers.comes_true(arm_and_pedestal_touch));
+  ASSERT_TRUE(controllers.comes_true(arm_and_pedestal_touch, std::chrono::seconds(90)));
   host.signal(SIGKILL);
   EXPECT_EQ(host.wait(), 128 + SIGKILL);
   std::this_thread::sleep_for(std::chrono::seconds(3));  // longer than every time limit of a handoff
