@@ -97,11 +97,6 @@ consteval bool everywhere(Rule rule) {
   return true;
 }
 
-constexpr bool is_silence(Event event) {
-  return event == Event::HostLost || event == Event::PeerLost || event == Event::PeerSilent ||
-         event == Event::OfferUnanswered;
-}
-
 static_assert(everywhere([](StateId state, Event event, Reaction r) {
                 if (r.kind != ReactionKind::Go || r.next != StateId::Opening) return true;
                 return (state == StateId::Relax && event == Event::PeerWatched) ||
@@ -122,7 +117,9 @@ static_assert(everywhere([](StateId state, Event event, Reaction r) {
               "by the record another answers for");
 
 static_assert(everywhere([](StateId, Event event, Reaction r) {
-                return !is_silence(event) || r.kind != ReactionKind::Go ||
+                const bool silence = event == Event::HostLost || event == Event::PeerLost ||
+                                     event == Event::PeerSilent || event == Event::OfferUnanswered;
+                return !silence || r.kind != ReactionKind::Go ||
                        (r.next != StateId::Opening && r.next != StateId::Ready);
               }),
               "I6: silence opens nothing");

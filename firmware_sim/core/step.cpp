@@ -130,7 +130,6 @@ void store_permitted(State& state, std::optional<NvmWrite>& write) {
 }
 
 Valves decide_valves(State& state, const Inputs& inputs) {
-  if (state.config.passive) return Valves{};
   const Valves wanted = release_guarded(state, wanted_valves(state, inputs.elapsed_ms));
   return guarded(state.config, force_limit_dn(state), inputs.sensors, inputs.elapsed_ms, wanted, state.guard);
 }

@@ -3,6 +3,7 @@
 
 #include "firmware_sim/core/authentication.hpp"
 #include "firmware_sim/core/commands.hpp"
+#include "firmware_sim/core/sending.hpp"
 #include "protocol/wire/seal.hpp"
 #include "tests/firmware_sim/core/made_state.hpp"
 
@@ -224,6 +225,29 @@ TEST(FrameNumbers, are_given_out_by_a_record_that_is_stored_and_can_be_read) {
     EXPECT_EQ(state.frame_block, 0U);
     EXPECT_EQ(state.store.record.frame_block, 12U);
   }
+}
+
+TEST(FrameNumbers, are_used_only_below_what_is_stored_as_given_out) {
+  const wire::Frame frame = wire::pack(wire::Force{}, {.node = kArm});
+  for (const std::uint32_t stored : {10U, 11U}) {
+    State state = in_block_10(stored);
+    state.frame_block = stored;
+    SendQueue queue;
+    send(state, queue, frame);
+    EXPECT_EQ(queue.size, stored - 10);
+    EXPECT_EQ(state.counters.frames_not_sent, 11 - stored);
+    EXPECT_EQ(queue.frames[0].kind, stored == 11 ? wire::FrameKind::Fd : wire::FrameKind::Data);
+    State other = in_block_10(stored);
+    const Outputs outputs = step(other, {});
+    EXPECT_EQ(outputs.send.frames[0].id, stored == 11 ? wire::kSynchronisationId + kArm : 0U)
+        << "asks whom it hears";
+  }
+  State classic = made(StateId::Loaded);
+  SendQueue queue;
+  send(classic, queue, frame);
+  EXPECT_EQ(queue.frames[0], frame);
+  step(classic, {});
+  EXPECT_EQ(classic.link.next_number(), 0U);
 }
 
 /// Whether `link` looks at a sealed frame of node `node`, 0 being a host, at all.

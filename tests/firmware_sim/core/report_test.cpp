@@ -4,6 +4,7 @@
 #include <functional>
 #include <vector>
 
+#include "firmware_sim/core/guards.hpp"
 #include "firmware_sim/core/telemetry.hpp"
 #include "tests/firmware_sim/core/made_state.hpp"
 
@@ -260,6 +261,115 @@ TEST(FaultsSaid, of_a_manual_release_carry_the_challenge_while_it_may_be_answere
   ASSERT_EQ(faults.size(), 1U);
   EXPECT_EQ(faults[0].severity, wire::Severity::Warning);
   EXPECT_EQ(faults[0].argument, 0);
+}
+
+/// The milliseconds in which a message of that kind is said.
+template <class Message>
+std::vector<int> times_of(State& state, int ms) {
+  std::vector<int> times;
+  for (int at = 0; at < ms; ++at) {
+    if (!said<Message>(state).empty()) times.push_back(at);
+  }
+  return times;
+}
+
+TEST(Periods, are_kept_to_the_millisecond) {
+  const State state = made(StateId::Hold);
+  State one = state;
+  EXPECT_EQ(times_of<wire::NodeState>(one, 61), (std::vector{0, 20, 40, 60}));
+  one = state;
+  EXPECT_EQ(times_of<wire::Force>(one, 61), (std::vector{10, 30, 50}));
+  one = state;
+  EXPECT_EQ(times_of<wire::Pneumatics>(one, 201), (std::vector{0, 100, 200}));
+  one = state;
+  EXPECT_EQ(times_of<wire::LayoutStatus>(one, 1001), (std::vector{0, 500, 1000}));
+  one = state;
+  EXPECT_EQ(times_of<wire::Custody>(one, 201), (std::vector{0, 100, 200}));
+  one.id = StateId::Offered;
+  EXPECT_EQ(times_of<wire::Custody>(one, 42), (std::vector{0, 20, 40})) << "the long period is cut short";
+  one = state;
+  one.faults.raise(wire::FaultCode::Slip);
+  EXPECT_EQ(times_of<wire::FaultReport>(one, 201), (std::vector{0, 100, 200}));
+}
+
+TEST(Status, is_of_a_stable_hold_only_where_a_node_answers_for_it) {
+  for (std::size_t i = 0; i < kStates; ++i) {
+    State state = made(static_cast<StateId>(i));
+    squeeze_with(state, 800);
+    state.permit_dn = 1000;
+    const bool well = holds_well(state);
+    EXPECT_EQ(status_of(state).hold_stable, holds(state.id) && well) << i;
+  }
+}
+
+TEST(Quantities, past_what_a_field_can_say_are_said_as_its_most) {
+  State state = made(StateId::Hold);
+  squeeze_with(state, 65'736);
+  state.measurement.separation_10um = 5 * 65'636;
+  EXPECT_EQ(status_of(state).f_low_dn, 4094);
+  EXPECT_EQ(status_of(state).separation_50um, 4094);
+  state.measurement.close_ubar = {9'000'000, 9'000'000};
+  state.measurement.open_ubar = 7'500'000;
+  const auto pneumatics = said<wire::Pneumatics>(state);
+  ASSERT_EQ(pneumatics.size(), 1U);
+  EXPECT_EQ(pneumatics[0].close_2500ubar, 3600);
+  EXPECT_EQ(pneumatics[0].open_2500ubar, 3000);
+}
+
+TEST(FaultsSaid, of_anything_else_carry_no_challenge) {
+  State state = made(StateId::Hold);
+  state.challenge = 321;
+  state.timers.challenge.start(500);
+  state.faults.raise(wire::FaultCode::Slip);
+  const auto faults = said<wire::FaultReport>(state, 2);
+  ASSERT_EQ(faults.size(), 2U);
+  EXPECT_EQ(faults[0],
+            (wire::FaultReport{wire::FaultCode::Slip, wire::Severity::Hold, true, StateId::Hold, 0}));
+  EXPECT_EQ(faults[1].code, wire::FaultCode::ManualRelease);
+}
+
+/// The tokens of the outcomes that are repeated within `ms`.
+std::vector<int> outcomes_of(State state, int ms) {
+  std::vector<int> tokens;
+  for (int at = 0; at < ms; ++at) {
+    for (const wire::Custody& custody : said<wire::Custody>(state)) {
+      if (!custody.past()) continue;
+      EXPECT_EQ(at % 100, 0);
+      EXPECT_EQ(custody.peer, custody.token - 40);
+      EXPECT_EQ(custody.pair, custody.token + 10);
+      EXPECT_EQ(custody.fact, custody.token == 43 ? wire::Fact::Retain : wire::Fact::Released);
+      tokens.push_back(custody.token);
+    }
+  }
+  return tokens;
+}
+
+TEST(OutcomesSaid, take_turns_every_100_ms_but_for_the_one_that_is_said_now) {
+  State state = made(StateId::Hold);
+  for (std::uint8_t i = 0; i < 4; ++i) {
+    state.store.record.outcomes[i] = {.retained = i == 1,
+                                      .peer = static_cast<std::uint8_t>(2 + i),
+                                      .token = static_cast<std::uint16_t>(42 + i),
+                                      .pair = static_cast<std::uint16_t>(52 + i)};
+  }
+  state.store.record.custody = Custody::Sole;
+  EXPECT_EQ(outcomes_of(state, 501), (std::vector{42, 43, 44, 45, 42, 43}));
+  for (const Custody custody : {Custody::Released, Custody::Retained}) {
+    state.store.record.custody = custody;
+    EXPECT_EQ(outcomes_of(state, 501), (std::vector{43, 44, 45, 43, 44, 45}));
+  }
+  state.store.record.outcomes[2].peer = 0;
+  EXPECT_EQ(outcomes_of(state, 301), (std::vector{43, 45, 43, 45}));
+  State alone = state;
+  alone.store.record.outcomes = {};
+  alone.store.record.outcomes[3] = {.peer = 5, .token = 45, .pair = 55};
+  EXPECT_EQ(outcomes_of(alone, 201), (std::vector{45, 45, 45})) << "found wherever it lies";
+  State unstored = state;
+  unstored.store.requested = 1;
+  EXPECT_TRUE(outcomes_of(unstored, 300).empty());
+  State unread = state;
+  unread.store.readable = false;
+  EXPECT_TRUE(outcomes_of(unread, 300).empty());
 }
 
 }  // namespace
