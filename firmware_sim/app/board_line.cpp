@@ -13,6 +13,7 @@ namespace pinjaw::jaw_app {
 namespace {
 
 constexpr int kWatchdog_ms = 100;  // chosen: a hundred missed turns of the board's loop
+constexpr int kAskAgain_ms = 20;   // chosen: readings or their answer were lost on the line
 
 }  // namespace
 
@@ -39,12 +40,14 @@ BoardLine::~BoardLine() {
 void BoardLine::listen() {
   std::array<std::uint8_t, 1024> bytes{};
   ++silent_ms_;
+  ++asked_ms_;
   for (ssize_t count = 0; (count = read(socket_, bytes.data(), bytes.size())) > 0;) {
     for (ssize_t i = 0; i < count; ++i) {
       const auto packet = packets_.take(bytes.at(static_cast<std::size_t>(i)));
       if (!packet) continue;
       valves_ = link::valves_of(*packet);
       silent_ms_ = 0;
+      answered_ = true;
     }
   }
   if (silent_ms_ > kWatchdog_ms) valves_ = {};
@@ -52,7 +55,9 @@ void BoardLine::listen() {
 
 core::Valves BoardLine::exchange(const core::Sensors& sensors) {
   listen();
-  if (to_send_.empty()) {
+  if (to_send_.empty() && (answered_ || asked_ms_ >= kAskAgain_ms)) {
+    answered_ = false;
+    asked_ms_ = 0;
     const link::SensorsPacket packet = link::pack(sensors);
     to_send_.assign(packet.begin(), packet.end());
   }

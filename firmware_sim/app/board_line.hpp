@@ -11,8 +11,9 @@
 
 namespace pinjaw::jaw_app {
 
-/// A board's serial line behind a Unix stream socket, as an emulator offers it. Nothing here waits: readings
-/// that the line has no room for are passed over, for newer ones follow in a millisecond.
+/// A board's serial line behind a Unix stream socket, as an emulator offers it. Nothing here waits. The board
+/// answers readings with what its valves are told, and new ones go out only then: a slow board gets fewer of
+/// them, never old ones.
 class BoardLine final : public node::ExternalBoard {
  public:
   /// A sentence on what is wrong where nobody listens at `path`.
@@ -34,6 +35,8 @@ class BoardLine final : public node::ExternalBoard {
   link::PacketReader<link::kValvesBytes> packets_{link::kValvesMark};
   core::Valves valves_;
   int silent_ms_ = 0;
+  int asked_ms_ = 0;      ///< since readings went out
+  bool answered_ = true;  ///< the last ones
 };
 
 }  // namespace pinjaw::jaw_app

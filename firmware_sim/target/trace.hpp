@@ -32,8 +32,11 @@ std::span<const std::uint8_t> bytes_of(const T& value) {
   return {reinterpret_cast<const std::uint8_t*>(&value), sizeof(T)};
 }
 
-/// The part of a configuration that lies alike everywhere: all before its one pointer, the last member.
-inline constexpr std::size_t kConfigBytes = offsetof(core::Config, table);
+/// The part of a configuration that lies alike everywhere: all before its one pointer, the last member, and
+/// the padding before that, which is as long as the pointer likes.
+inline constexpr std::size_t kConfigBytes =
+    offsetof(core::Config, release_guard_enabled) + sizeof(core::Config::release_guard_enabled);
+static_assert(offsetof(core::Config, table) - kConfigBytes < alignof(const core::StateTable*));
 /// The part of the inputs that does: all after the frames.
 inline std::span<std::uint8_t> tail_of(core::Inputs& inputs) {
   constexpr std::size_t kFrom = offsetof(core::Inputs, sensors);

@@ -24,6 +24,7 @@ constexpr std::uintptr_t kUart = 0x09000000;
 constexpr std::uintptr_t kPciPorts = 0x3EFF0000;
 constexpr std::uintptr_t kPciConfiguration = 0x3F000000;
 constexpr std::uint32_t kKvaserPciCan = 0x840610E8;
+constexpr std::uint32_t kTick_ms = 4;  // chosen: an emulator inside User-Mode Linux does not keep up with 1
 constexpr std::uint32_t kTimerInterrupt = 27;     // virtual timer
 constexpr std::uint32_t kFirstPciInterrupt = 35;  // INTA to INTD
 
@@ -110,9 +111,11 @@ struct Board {
   core::NvmStatus memory;
   std::uint32_t overruns = 0;
   std::uint64_t tick = 0;        ///< when the last one was due
-  std::uint64_t tick_ticks = 1;  ///< of a millisecond
+  std::uint64_t tick_ticks = 1;  ///< of kTick_ms
   link::PacketReader<link::kSensorsBytes> packets{link::kSensorsMark};
-  bool sensed = false;  ///< a packet has come
+  bool sensed = false;    ///< a packet has come
+  bool answered = false;  ///< the last one
+  core::Valves told;      ///< to the valves, last
 };
 
 constinit Board the_board;
@@ -135,6 +138,7 @@ void serve_link() {
     if (!packet) continue;
     the_board.sensors = link::sensors_of(*packet);
     the_board.sensed = true;
+    the_board.answered = false;
   }
 }
 
@@ -154,7 +158,7 @@ void wait_until(std::uint64_t ticks) {
 void start() {
   the_board.config.node = PINJAW_BOARD_NODE;
   the_board.config.kit_id = PINJAW_BOARD_KIT;
-  the_board.tick_ticks = ticks_per_second() / 1000;
+  the_board.tick_ticks = std::uint64_t{ticks_per_second()} * kTick_ms / 1000;
   start_interrupts();
   word(kUart + 0x2C) = 0x70;   // eight bits, FIFO
   word(kUart + 0x30) = 0x301;  // on
@@ -180,7 +184,7 @@ std::uint32_t wait_for_tick() {
   std::uint32_t elapsed_ms = 0;
   do {
     the_board.tick += the_board.tick_ticks;
-    ++elapsed_ms;
+    elapsed_ms += kTick_ms;
   } while (now_ticks() >= the_board.tick + the_board.tick_ticks);
   wait_until(the_board.tick);
   return elapsed_ms;
@@ -198,7 +202,11 @@ core::BusHealth bus_health() {
   return {.off = kCan.bus_off(), .passive = kCan.passive(), .overruns = the_board.overruns};
 }
 
+/// News, or an answer to readings.
 void set_valves(const core::Valves& valves) {
+  if (the_board.answered && valves == the_board.told) return;
+  the_board.answered = true;
+  the_board.told = valves;
   for (const std::uint8_t byte : link::pack(valves)) {
     while ((word(kUart + 0x18) & 0x20U) != 0) {  // the sender is full
     }
