@@ -104,7 +104,7 @@ Recorder::Key Recorder::key_of(const State& state) {
 }
 
 void Recorder::power_on(const Config& config, const NvmImage& image, const State& made) {
-  if (config.table != &kStateTable) return;  // images have the true table only
+  if (config.table != &kStateTable || on_can_fd(config)) return;  // images have the true table, classic CAN
   Lane& lane = lanes_.emplace_back();
   Into into{lane.given};
   trace::Writer<Into> out{into};
