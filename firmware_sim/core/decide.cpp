@@ -165,14 +165,9 @@ Event event_of(const wire::Command& command) {
       return Event::CmdOpenEmpty;
     case wire::Op::ManualRelease:
       return command.argument == 2 ? Event::CmdManualRelease : Event::CmdManualAsk;
-    case wire::Op::ClearFault:
-      return Event::CmdClearFault;
-    case wire::Op::Arm:
-      return Event::CmdArm;
-    case wire::Op::Hold:
-      break;
+    default:  // ARM and CLEAR_FAULT have functions of their own
+      return Event::CmdHold;
   }
-  return Event::CmdHold;
 }
 
 Answer check(const State& state, const wire::Command& command) {

@@ -120,7 +120,6 @@ bool no_part_proven(const State& state) {
 }
 
 bool clear_of_part(const State& state) {
-  if (state.config.passive) return true;
   const wire::Layout& layout = state.layouts.layout;
   const std::int32_t clear_10um =
       layout.separation_contact_10um + layout.separation_tolerance_10um + kClear_10um;

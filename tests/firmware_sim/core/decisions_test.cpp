@@ -220,13 +220,15 @@ TEST(Deciding, abort_of_a_seat_needs_somebody_else_who_answers_for_the_part) {
 }
 
 TEST(Deciding, abort_of_a_fault_needs_its_cause_gone_and_no_custody) {
-  State state = made(StateId::FaultEmpty);
-  state.receiving.giver = wire::kOperatorPeer;
-  state.measurement.local_enable = true;
-  expect_cases(state, wire::plain_command(Op::Abort), Event::CmdAbort,
-               {{refusal(Reason::PartHeld), [](State& s) { s.store.record.custody = Custody::Sole; }},
-                {refusal(Reason::CauseRemains), [](State& s) { s.measurement.supply_low = true; }},
-                {refusal(Reason::CauseRemains), [](State& s) { s.store.failed = true; }}});
+  for (const StateId id : {StateId::FaultEmpty, StateId::FaultHold}) {
+    State state = made(id);
+    state.receiving.giver = wire::kOperatorPeer;
+    state.measurement.local_enable = true;
+    expect_cases(state, wire::plain_command(Op::Abort), Event::CmdAbort,
+                 {{refusal(Reason::PartHeld), [](State& s) { s.store.record.custody = Custody::Sole; }},
+                  {refusal(Reason::CauseRemains), [](State& s) { s.measurement.supply_low = true; }},
+                  {refusal(Reason::CauseRemains), [](State& s) { s.store.failed = true; }}});
+  }
 }
 
 TEST(Deciding, open_empty) {

@@ -342,7 +342,7 @@ State disturbed(StateId id, bool flag) {
   state.timers.challenge.start(8);
   state.store.record = {.custody = Custody::Latched,
                         .peer = kPallet,
-                        .token = 27,
+                        .token = 37,
                         .pair = 28,
                         .handoff_number = 26,
                         .force_set_dn = 333,
