@@ -12,9 +12,11 @@ constexpr std::int32_t kIntegral_ms = 100;  // chosen: slower than the regulator
 constexpr std::int32_t kIntegralMost_ubar =
     300'000;  // chosen: 1 % linearity, 0.5 % hysteresis and sensor offsets
 constexpr std::int32_t kIntegralWindow_dn =
-    60;                                  // anti-windup: beyond it the feed-forward is still on its way
-constexpr std::int32_t kStuck_ms = 100;  // chosen: a jaw that should move and does not
-constexpr std::int32_t kPush_ms = 200;   // chosen: the push that breaks it loose grows for so long
+    60;  // anti-windup: beyond it the feed-forward is still on its way
+constexpr std::int32_t kApproach_mm_s =
+    70;  // chosen: slower, and seals stick and slip; faster, and the touch is hard
+constexpr std::int32_t kPush_mdn_per_mm =
+    10;  // chosen: the whole uncertainty within 200 ms of standing still
 
 /// One step of the reference towards the set point.
 void follow_ramp(const State& state, std::int32_t set_dn, std::int32_t elapsed_ms, ForceControl& control) {
@@ -86,23 +88,26 @@ Valves regulate(State& state, std::int32_t set_dn, std::int32_t elapsed_ms) {
   return valves;
 }
 
-/// Closes on the part with the light squeeze. The open side's pressure brakes the jaws and is not made up
-/// for; only a jaw that sticks short of the part gets more, up to the uncertainty.
+/// Closes on the part with about the light squeeze. The open side's pressure brakes the jaws and is not made
+/// up for. Friction, orifices and supply differ from gripper to gripper: the push grows while the jaws are
+/// slow, up to the uncertainty, and shrinks while they are fast, so that none sticks and none hits the part
+/// hard.
 Valves approach(State& state, std::int32_t elapsed_ms) {
   const Measurement& m = state.measurement;
-  if (separation_in_window(state) && m.still_ms > 0) return regulate(state, force_set_dn(state), elapsed_ms);
+  const std::int32_t light_dn = force_set_dn(state);
+  if (separation_in_window(state) && m.still_ms > 0) return regulate(state, light_dn, elapsed_ms);
   Valves valves;
   if (m.open_ubar / 1000 > state.config.pre_vent_mbar) {
     valves.pre_vent = true;
     return valves;
   }
-  state.control.reference_dn = force_set_dn(state);
-  const std::int32_t stuck_ms = std::clamp<std::int32_t>(state.control.blocked_ms - kStuck_ms, 0, kPush_ms);
-  const std::int32_t push_dn =
-      separation_in_window(state) ? 0 : state.config.uncertainty_dn * stuck_ms / kPush_ms;
-  const std::int32_t aim_mbar = pressure_mbar(state.config, force_set_dn(state) + push_dn, 0);
+  std::int32_t& push_mdn = state.control.push_mdn;
+  push_mdn = std::clamp(push_mdn + (kApproach_mm_s - m.closing_mm_s) * kPush_mdn_per_mm * elapsed_ms,
+                        -500 * light_dn, 1000 * state.config.uncertainty_dn);
+  state.control.reference_dn = light_dn;
   state.control.flow = Flow::Filling;
   valves.spool = Spool::Close;
+  const std::int32_t aim_mbar = pressure_mbar(state.config, light_dn + push_mdn / 1000, 0);
   valves.close_set_mbar =
       std::min(aim_mbar + state.config.check_cracking_mbar, state.config.pressure_max_mbar);
   return valves;

@@ -14,6 +14,8 @@ constexpr std::int32_t kPressureLeast_mbar = -700;
 constexpr std::int32_t kPressureMost_mbar = 9900;  // the sensors' full scale is 10 bar
 constexpr std::int32_t kOverTravel_10um = 200;
 
+constexpr std::int32_t kSpeed_ms = 16;  // chosen: the sensor's step of 10 um is 0.6 mm/s
+
 std::int32_t filtered(std::int32_t old_ubar, std::int32_t reading_mbar, std::int32_t elapsed_ms) {
   const std::int32_t step = std::min(elapsed_ms, kFilter_ms);
   return old_ubar + (reading_mbar * 1000 - old_ubar) / kFilter_ms * step;
@@ -57,6 +59,13 @@ void observe_pressures(const Config& config, const Sensors& sensors, std::int32_
   m.squeeze.high_dn = m.squeeze.measured_dn + config.uncertainty_dn;
 }
 
+void observe_speed(std::int32_t elapsed_ms, Measurement& m) {
+  const std::int32_t separation_um = m.separation_10um * 10;
+  if (!m.started) m.lagging_um = separation_um;
+  m.lagging_um += (separation_um - m.lagging_um) * elapsed_ms / kSpeed_ms;
+  m.closing_mm_s = (m.lagging_um - separation_um) / kSpeed_ms;
+}
+
 }  // namespace
 
 std::uint16_t counted(std::uint16_t ms, bool going_on, std::uint32_t elapsed_ms) {
@@ -73,6 +82,7 @@ void observe(const Config& config, const Sensors& sensors, std::uint32_t elapsed
   if (!still) m.still_at_10um = sensors.separation_10um;
   m.still_ms = counted(m.still_ms, still, elapsed_ms);
   m.separation_10um = sensors.separation_10um;
+  observe_speed(static_cast<std::int32_t>(std::min<std::uint32_t>(elapsed_ms, kSpeed_ms)), m);
 
   const SensorTrouble trouble = trouble_of(config, sensors);
   m.troubled_ms = counted(m.troubled_ms, trouble != SensorTrouble::None, elapsed_ms);

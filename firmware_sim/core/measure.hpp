@@ -26,6 +26,8 @@ struct Measurement {
   std::int32_t open_ubar = 0;                ///< filtered mean of both
   Squeeze squeeze;
   std::int32_t separation_10um = 0;
+  std::int32_t lagging_um = 0;     ///< separation as it was some 16 ms ago
+  std::int32_t closing_mm_s = 0;   ///< speed at which the separation shrinks, over those ms
   std::int32_t still_at_10um = 0;  ///< where the jaws were when `still_ms` began
   std::uint16_t still_ms = 0;      ///< how long they have not moved
   std::uint16_t troubled_ms = 0;   ///< how long something has been wrong with the sensors

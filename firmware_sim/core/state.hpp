@@ -76,6 +76,7 @@ struct ForceControl {
   std::uint16_t starved_ms = 0;    ///< holding too weakly: how long air should have come
   bool refilling = false;          ///< the chamber was opened in the last step to refill a hold
   std::uint16_t asked_ms = 0;      ///< grows while a stable hold asks for air, falls while it does not
+  std::int32_t push_mdn = 0;       ///< SEATING: what the approach adds to the light squeeze
 };
 
 /// Times that remain.

@@ -39,8 +39,8 @@ struct AirParameters {
   double polytropic = 1.2;                          // the same: between 1.0 (slow) and 1.4 (fast)
   Restriction fill{0.01 * kDm3PerSecondBar, 0.3};   // the same: orifice in the close line, 0.45 N/ms at most
   Restriction relax{0.05 * kDm3PerSecondBar, 0.3};  // the same, throttled 5/2: the close chamber's way out
-  Restriction meter_out{0.01 * kDm3PerSecondBar, 0.3};  // the same: the open chamber's way out while closing;
-                                                        // 26 mm/s a jaw: the light touch presses under 60 N
+  // chosen: the open chamber's way out while closing; some 20 mm/s a jaw at 12 N
+  Restriction meter_out{0.0065 * kDm3PerSecondBar, 0.3};
   Restriction open_fill{0.05 * kDm3PerSecondBar, 0.3};  // as relax
   double check_cracking_pa = 0.2e5;                     // the same: pilot-operated check valve
   Restriction close_leak{0, 0.3};                       ///< this specimen's, close chamber to the room

@@ -153,17 +153,29 @@ TEST(Approach, vents_the_open_side_first) {
   EXPECT_FALSE(valves.relax);
 }
 
-TEST(Approach, pushes_harder_where_the_jaw_sticks_up_to_the_uncertainty) {
+TEST(Approach, pushes_harder_while_the_jaws_are_slow_up_to_the_uncertainty) {
   State state = approaching();
-  state.control.blocked_ms = 100;
-  EXPECT_EQ(wanted(state).close_set_mbar, pressure_mbar(state.config, 120, 0) + 200);
-  state.control.blocked_ms = 200;
-  EXPECT_EQ(wanted(state).close_set_mbar, pressure_mbar(state.config, 180, 0) + 200);
-  for (const std::uint16_t blocked_ms : {std::uint16_t{300}, std::uint16_t{500}}) {
-    state.control.blocked_ms = blocked_ms;
-    EXPECT_EQ(wanted(state).close_set_mbar, pressure_mbar(state.config, 240, 0) + 200) << blocked_ms;
-  }
+  const auto set_dn_after = [&](int ms, std::int32_t closing_mm_s) {
+    state.control.push_mdn = 0;
+    state.measurement.closing_mm_s = closing_mm_s;
+    Valves valves;
+    for (int i = 0; i < ms; ++i) valves = wanted_valves(state, 1);
+    for (std::int32_t dn = 0; dn < 1000; ++dn) {
+      if (valves.close_set_mbar == pressure_mbar(state.config, dn, 0) + 200) return dn;
+    }
+    return -1;
+  };
+  EXPECT_EQ(set_dn_after(100, 0), 120 + 70) << "0.7 dn a millisecond of standing still";
+  EXPECT_EQ(set_dn_after(171, 0), 120 + 119);
+  EXPECT_EQ(set_dn_after(172, 0), 120 + 120);
+  EXPECT_EQ(set_dn_after(1000, 0), 120 + 120);
+  EXPECT_EQ(set_dn_after(100, 60), 120 + 10);
+  EXPECT_EQ(set_dn_after(500, 70), 120) << "as fast as it should be";
+  EXPECT_EQ(set_dn_after(100, 90), 120 - 20);
+  EXPECT_EQ(set_dn_after(1000, 200), 60) << "no less than half the light squeeze";
   state.config.pressure_max_mbar = 600;
+  EXPECT_EQ(wanted(state).close_set_mbar, 431);
+  state.control.push_mdn = 120'000;
   EXPECT_EQ(wanted(state).close_set_mbar, 600);
 }
 

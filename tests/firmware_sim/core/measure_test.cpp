@@ -124,6 +124,26 @@ SensorTrouble trouble_with(const Sensors& sensors, Config config = {}) {
   return m.trouble;
 }
 
+TEST(Measure, speed_is_what_the_separation_lost_over_the_last_milliseconds) {
+  for (const std::int32_t step_ms : {1, 2, 5}) {
+    const Config config;
+    Measurement m;
+    Sensors sensors = at_rest();
+    observe(config, sensors, 1, m);
+    EXPECT_EQ(m.closing_mm_s, 0) << "the first reading says nothing of speed";
+    for (int ms = 0; ms < 200; ms += step_ms) {
+      sensors.separation_10um -= 6 * step_ms;
+      observe(config, sensors, static_cast<std::uint32_t>(step_ms), m);
+    }
+    EXPECT_NEAR(m.closing_mm_s, 60, 4 * step_ms) << "60 mm/s are 6 steps of 10 um a millisecond";
+    for (int ms = 0; ms < 100; ++ms) observe(config, sensors, 1, m);
+    EXPECT_EQ(m.closing_mm_s, 0);
+    sensors.separation_10um += 160;
+    observe(config, sensors, 1000, m);
+    EXPECT_EQ(m.closing_mm_s, 0) << "a long step is all there is to know";
+  }
+}
+
 TEST(Measure, a_pressure_out_of_range_is_trouble_after_3_ms_whichever_sensor_it_is) {
   for (int sensor = 0; sensor < 4; ++sensor) {
     for (const auto& [reading_mbar, bad] :

@@ -20,10 +20,10 @@ namespace {
 
 constexpr double kHardware_n = 140;
 constexpr double kUncertainty_n = 12;
-// chosen: a light touch alone presses so hard with the stiffest pins and the heaviest plates
-constexpr double kLeastLimit_n = 100;
-constexpr double kWindow_n = 3;  // chosen: F_limit over F_req + 2 u, room for a controller to stay in
 constexpr double kLight_n = 12;
+constexpr double kWindow_n = 5;  // chosen: F_limit over F_req + 2 u, room for a controller to stay in
+// a part that needs twice the light touch
+constexpr double kLeastLimit_n = 2 * kLight_n + 2 * kUncertainty_n + kWindow_n + 1;
 constexpr double kOpen_mm = 60;
 constexpr double kBudget_s = 1.0;
 constexpr double kSlowest_mm_s = 30;

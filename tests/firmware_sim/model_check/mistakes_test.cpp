@@ -103,7 +103,7 @@ std::vector<Mistake> slow_mistakes() {
   };
 }
 
-Findings search_with(const Mistake& mistake, bool release_guard) {
+Findings search_with(const Mistake& mistake, bool release_guard, bool merge_equals = false) {
   StateTable table = kStateTable;
   for (const Misprint& misprint : mistake.misprints)
     table[static_cast<std::size_t>(misprint.event)][static_cast<std::size_t>(misprint.state)] = misprint.cell;
@@ -111,7 +111,7 @@ Findings search_with(const Mistake& mistake, bool release_guard) {
   Scenario scenario = mistake.scenario;
   scenario.table = &table;
   scenario.release_guard = release_guard;
-  const Findings findings = search(scenario, {.invariants = mistake.violates});
+  const Findings findings = search(scenario, {.invariants = mistake.violates, .merge_equals = merge_equals});
   broken_rules.clear();
   return findings;
 }
@@ -136,6 +136,16 @@ TEST(Mistakes, are_found_by_the_invariant_that_their_rule_is_for) {
 
 TEST(NightlyMistakes, are_found_where_only_a_long_way_shows_them) {
   expect_found(slow_mistakes());
+}
+
+TEST(NightlyMistakes, are_found_as_well_where_states_that_nobody_can_tell_apart_count_as_one) {
+  for (const std::vector<Mistake>& mistakes : {quick_mistakes(), slow_mistakes()}) {
+    for (std::size_t i = 0; i < mistakes.size(); i += 5) {
+      const Findings findings = search_with(mistakes[i], false, true);
+      ASSERT_TRUE(findings.violation) << mistakes[i].name;
+      EXPECT_EQ(findings.violation->invariant, mistakes[i].violates) << trace_of(findings);
+    }
+  }
 }
 
 TEST(NightlyMistakes, none_is_found_in_the_core_as_it_is_though_the_second_channel_is_off) {
