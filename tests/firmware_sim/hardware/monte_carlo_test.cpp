@@ -38,10 +38,11 @@ struct Draws {
   bool half() { return noise.symmetric() < 0; }
 };
 
-constexpr double kTolerance = 0.3;  // of friction, stiffness, mass, orifices, lags, noise: the specification
+constexpr double kTolerance = 0.3;  // of friction, stiffness, mass, leak, supply: the specification
+constexpr double kMade = 0.2;       // chosen: of orifices, volumes, lags, noise, as catalogues state them
 
 void draw_plant(Draws& draws, plant::Parameters& p) {
-  const auto vary = [&](double& value) { value = draws.about(value, kTolerance); };
+  const auto vary = [&](double& value) { value = draws.about(value, kMade); };
   const double friction = draws.about(1, kTolerance);
   p.friction.coulomb_n *= friction;
   p.friction.breakaway_n *= friction;
@@ -49,7 +50,7 @@ void draw_plant(Draws& draws, plant::Parameters& p) {
   vary(p.friction.stribeck_m_s);
   p.jaw.contact_n_m = std::exp(draws.between(std::log(1.4e6), std::log(5.2e6)));  // 2e6 to 4e6, +-30 %
   vary(p.jaw.contact_damping_n_s_m);
-  vary(p.jaw.moving_mass_kg);
+  p.jaw.moving_mass_kg = draws.about(p.jaw.moving_mass_kg, kTolerance);
   vary(p.air.dead_volume_m3);
   for (plant::Restriction* line : {&p.air.fill, &p.air.relax, &p.air.meter_out, &p.air.open_fill}) {
     vary(line->conductance_m3_s_pa);
