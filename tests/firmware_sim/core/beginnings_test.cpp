@@ -12,7 +12,7 @@
 namespace pinjaw::core::test {
 namespace {
 
-constexpr std::uint32_t kMost = 0xFFFF'FFFF;
+constexpr std::uint32_t kEndOfCount = 0xFFFF'FFFF;
 
 TEST(Beginning, of_inputs_and_outputs_is_rest) {
   const Inputs inputs;
@@ -200,9 +200,9 @@ TEST(PowerOn, begins_another_boot_and_the_next_block_of_sessions) {
   EXPECT_EQ(state.store.record.boot_count, 7);
   EXPECT_TRUE(state.store.record_waits);
   EXPECT_EQ(state.timers.force.left_ms(), 11);
-  const State last = power_on({.node = kArm}, left_by({.session_block = kMost - 64}));
-  EXPECT_EQ(last.store.record.session_block, kMost - 64) << "no block is left";
-  EXPECT_EQ(last.next_session, kMost - 64);
+  const State last = power_on({.node = kArm}, left_by({.session_block = kEndOfCount - 64}));
+  EXPECT_EQ(last.store.record.session_block, kEndOfCount - 64) << "no block is left";
+  EXPECT_EQ(last.next_session, kEndOfCount - 64);
 }
 
 TEST(PowerOn, takes_up_the_handoff_and_the_permit_that_the_record_tells_of) {
