@@ -335,8 +335,14 @@ class Walk:
             self.file.mutate(node, both(COMPARISONS[operator]), "comparison", function)
         elif operator in ("&&", "||"):
             other = "||" if operator == "&&" else "&&"
-            choices = [f"({a}) {other} ({b})", f"static_cast<bool>({b})"]
-            if not re.fullmatch(r"!?keeps\([\w:]+\)", b):  # firmware_sim/core/rules.hpp: here every rule is kept, so b says nothing
+            choices = [f"({a}) {other} ({b})"]
+            # firmware_sim/core/rules.hpp: here every rule is kept, so `a && keeps` and `a || !keeps` are a, `a && !keeps` and
+            # `a || keeps` are b: those two are no mutants
+            kept = re.fullmatch(r"(!?)keeps\([\w:]+\)", b)
+            says_nothing = kept is not None and (operator == "&&") == (kept.group(1) == "")
+            if kept is None or says_nothing:
+                choices.append(f"static_cast<bool>({b})")
+            if not says_nothing:
                 choices.append(f"static_cast<bool>({a})")
             self.file.mutate(node, choices, "logical", function)
         elif operator in ARITHMETIC and T.POINTER not in (left.type.get_canonical().kind, right.type.get_canonical().kind):

@@ -334,6 +334,12 @@ TEST(Facts, are_not_said_before_they_are_stored_or_of_a_memory_that_cannot_be_re
             Fact::Unknown);
   EXPECT_EQ(said_with(Custody::Sole, StateId::Hold, [](State& s) { s.store.layout_waits = true; }),
             Fact::Unknown);
+  EXPECT_EQ(said_with(Custody::Latched, StateId::Taken,
+                      [](State& s) {
+                        s.hold_proven = true;
+                        s.store.record_waits = true;
+                      }),
+            Fact::Unknown);
   EXPECT_EQ(said_with(Custody::Sole, StateId::Hold, [](State& s) { s.store.failed = true; }), Fact::Unknown);
   EXPECT_EQ(said_with(Custody::Sole, StateId::Hold, [](State& s) { s.store.requested = 1; }), Fact::Unknown);
   EXPECT_EQ(said_with(Custody::Sole, StateId::Hold, [](State& s) { s.store.readable = false; }),
