@@ -3,6 +3,7 @@
 
 #include <string_view>
 
+#include "protocol/wire/aes.hpp"
 #include "protocol/wire/codec.hpp"
 #include "protocol/wire/layout.hpp"
 #include "protocol/wire/table.hpp"
@@ -43,6 +44,13 @@ constexpr bool divides(Rest polynomial, Rest first, bool reflected) {
 static_assert(divides<Crc8, std::uint8_t>(0x2F, 0xFF, false));
 static_assert(divides<Crc16, std::uint16_t>(0x3D65, 0, false));
 static_assert(divides<Crc32, std::uint32_t>(0xEDB88320, 0xFFFFFFFF, true));
+
+/// FIPS 197, appendix C.1: the S-box that the compiler made.
+constexpr Key kCounted{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+constexpr AesBlock kPlain{0x00, 0x11, 0x22, 0x33, 0x44, 0x55, 0x66, 0x77,
+                          0x88, 0x99, 0xAA, 0xBB, 0xCC, 0xDD, 0xEE, 0xFF};
+static_assert(aes128(kCounted, kPlain) == AesBlock{0x69, 0xC4, 0xE0, 0xD8, 0x6A, 0x7B, 0x04, 0x30, 0xD8, 0xCD,
+                                                   0xB7, 0x80, 0x70, 0xB4, 0xC5, 0x5A});
 
 static_assert(detail::same_text("", "") && detail::same_text("ab", "ab"));
 static_assert(!detail::same_text("ab", "abc") && !detail::same_text("abc", "ab"));
