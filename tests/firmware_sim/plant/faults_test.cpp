@@ -159,7 +159,7 @@ TEST(PlantFaults, a_vent_that_sticks_shut_leaves_the_meter_out) {
   free.run(0.1);
   stuck.run(0.1);
   EXPECT_GT(stuck.state.open_pa, free.state.open_pa + 0.5e5);
-  stuck.run(2.0);
+  stuck.run(4.0);
   EXPECT_LT(stuck.state.open_pa, kAtmosphere_Pa + 0.1e5);
 }
 
