@@ -61,12 +61,7 @@ struct Authenticated : testing::Test {
   }
   void seat_pedestal() {
     bench.load_gripper(kArm);
-    bench.arm_session(kPedestal);
-    bench.bring_part(kPedestal, true);
-    ASSERT_EQ(bench.result_of(kArm, wire::offer_command(kPedestal)), CommandResult::Ok);
-    bench.run(100);
-    ASSERT_EQ(bench.result_of(kPedestal, wire::accept_command(kArm)), CommandResult::Ok);
-    ASSERT_TRUE(bench.reaches(kPedestal, StateId::Seated));
+    ASSERT_TRUE(bench.seat(kArm, kPedestal));
   }
   /// A command of the open session with its next number and MAC.
   wire::Command next(std::uint8_t node, wire::Command command) {

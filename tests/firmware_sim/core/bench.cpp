@@ -284,18 +284,25 @@ void Bench::load_gripper(std::uint8_t node) {
 }
 
 bool Bench::hand_over(std::uint8_t giver, std::uint8_t receiver) {
+  return seat(giver, receiver) && squeeze(receiver) && reaches(receiver, StateId::Hold) &&
+         reaches(giver, StateId::Ready);
+}
+
+bool Bench::seat(std::uint8_t giver, std::uint8_t receiver) {
   for (const std::uint8_t node : {giver, receiver}) {
     if (!at(node).core.gate.armed() || at(node).id() == StateId::Loaded) arm_session(node);
   }
   bring_part(receiver, true);
   if (result_of(giver, wire::offer_command(receiver)) != wire::CommandResult::Ok) return false;
   run(100);
-  if (result_of(receiver, wire::accept_command(giver)) != wire::CommandResult::Ok) return false;
-  if (!reaches(receiver, StateId::Seated)) return false;
+  return result_of(receiver, wire::accept_command(giver)) == wire::CommandResult::Ok &&
+         reaches(receiver, StateId::Seated);
+}
+
+bool Bench::squeeze(std::uint8_t receiver) {
   const wire::SqueezeForces forces =
       at(receiver).config.passive ? wire::SqueezeForces{0, 0} : wire::SqueezeForces{520, 1400};
-  if (result_of(receiver, wire::squeeze_command(forces)) != wire::CommandResult::Ok) return false;
-  return reaches(receiver, StateId::Hold) && reaches(giver, StateId::Ready);
+  return result_of(receiver, wire::squeeze_command(forces)) == wire::CommandResult::Ok;
 }
 
 }  // namespace pinjaw::core::test

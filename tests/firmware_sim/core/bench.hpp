@@ -91,6 +91,10 @@ class Bench {
   void load_gripper(std::uint8_t node);
   /// From HOLD at `giver` to HOLD at `receiver`; false where it does not end so.
   bool hand_over(std::uint8_t giver, std::uint8_t receiver);
+  /// Its first half: OFFER at `giver`, ACCEPT at `receiver`, which gets SEATED.
+  bool seat(std::uint8_t giver, std::uint8_t receiver);
+  /// SQUEEZE at a seated `receiver`, which begins to take the part.
+  bool squeeze(std::uint8_t receiver);
   /// The part comes between the jaws of `node` (or onto its seats), or leaves.
   void bring_part(std::uint8_t node, bool there);
 

@@ -38,13 +38,8 @@ TEST_F(BusOff, stops_jaws_that_close_within_one_step) {
 
 TEST_F(BusOff, of_a_giver_that_relaxes_makes_it_squeeze_again) {
   bench.load_gripper(kArm);
-  bench.arm_session(kPedestal);
-  bench.bring_part(kPedestal, true);
-  bench.command(kArm, wire::offer_command(kPedestal));
-  bench.run(100);
-  bench.command(kPedestal, wire::accept_command(kArm));
-  ASSERT_TRUE(bench.reaches(kPedestal, StateId::Seated));
-  bench.command(kPedestal, wire::squeeze_command({520, 1400}));
+  ASSERT_TRUE(bench.seat(kArm, kPedestal));
+  ASSERT_TRUE(bench.squeeze(kPedestal));
   ASSERT_TRUE(bench.reaches(kArm, StateId::Relax));
   fall_off(bench.arm(), 1);
   EXPECT_EQ(bench.arm().id(), StateId::Resqueeze);

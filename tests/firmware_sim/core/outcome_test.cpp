@@ -16,13 +16,8 @@ struct Outcomes : testing::Test {
   }
   /// The pedestal has latched, and goes dark before it hears anything more.
   void latch_pedestal_and_cut_its_power() {
-    bench.arm_session(kPedestal);
-    bench.bring_part(kPedestal, true);
-    ASSERT_EQ(bench.result_of(kArm, wire::offer_command(kPedestal)), wire::CommandResult::Ok);
-    bench.run(100);
-    ASSERT_EQ(bench.result_of(kPedestal, wire::accept_command(kArm)), wire::CommandResult::Ok);
-    ASSERT_TRUE(bench.reaches(kPedestal, StateId::Seated));
-    ASSERT_EQ(bench.result_of(kPedestal, wire::squeeze_command({520, 1400})), wire::CommandResult::Ok);
+    ASSERT_TRUE(bench.seat(kArm, kPedestal));
+    ASSERT_TRUE(bench.squeeze(kPedestal));
     ASSERT_TRUE(bench.reaches(kArm, StateId::Relax)) << "it has heard TAKE";
     ASSERT_EQ(bench.pedestal().memory.record->custody, Custody::Latched);
     bench.pedestal().power_off();
@@ -82,12 +77,7 @@ TEST_F(Outcomes, let_a_receiver_go_on_opening_that_was_stopped_on_its_way) {
 /// Power goes while the jaws press lightly on a part that the giver answers for: no record of custody, a part
 /// felt.
 TEST_F(Outcomes, let_a_receiver_open_that_lost_power_before_it_latched) {
-  bench.arm_session(kPedestal);
-  bench.bring_part(kPedestal, true);
-  bench.command(kArm, wire::offer_command(kPedestal));
-  bench.run(100);
-  bench.command(kPedestal, wire::accept_command(kArm));
-  ASSERT_TRUE(bench.reaches(kPedestal, StateId::Seated));
+  ASSERT_TRUE(bench.seat(kArm, kPedestal));
   bench.pedestal().power_off();
   bench.run(20);
   bench.pedestal().power_on_again();
@@ -103,12 +93,7 @@ TEST_F(Outcomes, let_a_receiver_open_that_lost_power_before_it_latched) {
 }
 
 TEST_F(Outcomes, of_another_token_do_not_let_it_open) {
-  bench.arm_session(kPedestal);
-  bench.bring_part(kPedestal, true);
-  bench.command(kArm, wire::offer_command(kPedestal));
-  bench.run(100);
-  bench.command(kPedestal, wire::accept_command(kArm));
-  ASSERT_TRUE(bench.reaches(kPedestal, StateId::Seated));
+  ASSERT_TRUE(bench.seat(kArm, kPedestal));
   bench.pedestal().power_off();
   NvmRecord record = *bench.pedestal().memory.record;
   --record.token;
@@ -132,13 +117,8 @@ TEST_F(Outcomes, survive_a_restart_of_the_giver) {
 }
 
 TEST_F(Outcomes, of_a_token_that_was_released_make_the_receiver_sole) {
-  bench.arm_session(kPedestal);
-  bench.bring_part(kPedestal, true);
-  bench.command(kArm, wire::offer_command(kPedestal));
-  bench.run(100);
-  bench.command(kPedestal, wire::accept_command(kArm));
-  ASSERT_TRUE(bench.reaches(kPedestal, StateId::Seated));
-  bench.command(kPedestal, wire::squeeze_command({520, 1400}));
+  ASSERT_TRUE(bench.seat(kArm, kPedestal));
+  ASSERT_TRUE(bench.squeeze(kPedestal));
   ASSERT_TRUE(bench.reaches(kArm, StateId::Opening));
   bench.run(3);
   bench.pedestal().power_off();

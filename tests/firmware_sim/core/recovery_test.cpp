@@ -19,13 +19,8 @@ struct Recovery : testing::Test {
   }
   void until_taken() {
     bench.load_gripper(kArm);
-    bench.arm_session(kPedestal);
-    bench.bring_part(kPedestal, true);
-    bench.command(kArm, wire::offer_command(kPedestal));
-    bench.run(100);
-    bench.command(kPedestal, wire::accept_command(kArm));
-    ASSERT_TRUE(bench.reaches(kPedestal, StateId::Seated));
-    bench.command(kPedestal, wire::squeeze_command({520, 1400}));
+    ASSERT_TRUE(bench.seat(kArm, kPedestal));
+    ASSERT_TRUE(bench.squeeze(kPedestal));
     ASSERT_TRUE(bench.reaches(kPedestal, StateId::Taken));
   }
   Bench bench;

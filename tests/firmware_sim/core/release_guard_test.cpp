@@ -39,13 +39,8 @@ struct TwoChannels : testing::Test {
   /// The pedestal takes what the arm offers; both channels of the arm see it from now on.
   void let_pedestal_take() {
     bench.load_gripper(kArm);
-    bench.arm_session(kPedestal);
-    bench.bring_part(kPedestal, true);
-    bench.command(kArm, wire::offer_command(kPedestal));
-    bench.run(100);
-    bench.command(kPedestal, wire::accept_command(kArm));
-    ASSERT_TRUE(bench.reaches(kPedestal, StateId::Seated));
-    bench.command(kPedestal, wire::squeeze_command({520, 1400}));
+    ASSERT_TRUE(bench.seat(kArm, kPedestal));
+    ASSERT_TRUE(bench.squeeze(kPedestal));
     ASSERT_TRUE(bench.reaches(kPedestal, StateId::Taken));
   }
   StateTable table = kStateTable;
