@@ -1,7 +1,6 @@
 #include "tests/firmware_sim/model_check/equals.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cstddef>
 #include <map>
 #include <tuple>
@@ -19,12 +18,10 @@ struct Arrival {
 /// What may come to the node in one step.
 std::vector<Arrival> arrivals(const NodeModel& model, const Network& network) {
   std::vector<Arrival> found{{}};
-  for (Said rest = network.facts_for(model.node()); rest != 0; rest &= rest - 1) {
-    const int message = std::countr_zero(rest);
-    found.push_back({.message = message});
-    if (network.holding_state_of(network.at(message).node) != 0)
-      found.push_back({.message = message, .peer_holds = true});
-  }
+  network.each_arrival(model.node(), ~Said{0}, [&](int message, bool peer_holds, Said) {
+    found.push_back({.message = message, .peer_holds = peer_holds});
+    return true;
+  });
   return found;
 }
 

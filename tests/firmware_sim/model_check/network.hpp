@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -31,8 +32,20 @@ class Network {
   std::optional<int> heard(std::uint8_t node, const wire::NodeState& state);
 
   [[nodiscard]] const Saying& at(int bit) const { return sayings_[static_cast<std::size_t>(bit)]; }
-  /// All frames of nodes other than `node`, STATE excluded.
-  [[nodiscard]] Said facts_for(std::uint8_t node) const { return facts_for_[node]; }
+  /// Calls `visit(message, peer_holds, needed)` for each custody frame of `said` that may come to `node`, and
+  /// once more where its sender's STATE, also of `said`, may come with it; `needed` are the frames. Ends
+  /// where it gives false.
+  template <class Visit>
+  bool each_arrival(std::uint8_t node, Said said, Visit visit) const {
+    for (Said rest = said & facts_for_[node]; rest != 0; rest &= rest - 1) {
+      const int message = std::countr_zero(rest);
+      const Said fact = Said{1} << message;
+      if (!visit(message, false, fact)) return false;
+      const Said state = holding_state_of(at(message).node) & said;
+      if (state != 0 && !visit(message, true, fact | state)) return false;
+    }
+    return true;
+  }
   /// The STATE of `node` that says it holds well; 0 where it never said so.
   [[nodiscard]] Said holding_state_of(std::uint8_t node) const { return holding_[node]; }
   /// RELEASED of `token` by `giver` to `receiver`; 0 where it was never said.

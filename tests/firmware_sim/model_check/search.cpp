@@ -1,7 +1,6 @@
 #include "tests/firmware_sim/model_check/search.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cstdio>
 #include <ctime>
 #include <stdexcept>
@@ -92,14 +91,7 @@ class Search {
         }
         return true;
       };
-      if (!all(-1, false, 0)) return;
-      for (Said rest = state.said & network_.facts_for(model.node()); rest != 0; rest &= rest - 1) {
-        const int bit = std::countr_zero(rest);
-        const Said fact = Said{1} << bit;
-        if (!all(bit, false, fact)) return;
-        const Said state_frame = network_.holding_state_of(network_.at(bit).node) & state.said;
-        if (state_frame != 0 && !all(bit, true, fact | state_frame)) return;
-      }
+      if (!all(-1, false, 0) || !network_.each_arrival(model.node(), state.said, all)) return;
     }
   }
 
