@@ -47,7 +47,7 @@ void BoardLine::listen() {
       if (!packet) continue;
       valves_ = link::valves_of(*packet);
       silent_ms_ = 0;
-      answered_ = true;
+      if (link::number_of(*packet) == number_) answered_ = true;
     }
   }
   if (silent_ms_ > kWatchdog_ms) valves_ = {};
@@ -58,7 +58,7 @@ core::Valves BoardLine::exchange(const core::Sensors& sensors) {
   if (to_send_.empty() && (answered_ || asked_ms_ >= kAskAgain_ms)) {
     answered_ = false;
     asked_ms_ = 0;
-    const link::SensorsPacket packet = link::pack(sensors);
+    const link::SensorsPacket packet = link::pack(sensors, ++number_);
     to_send_.assign(packet.begin(), packet.end());
   }
   const ssize_t sent = send(socket_, to_send_.data(), to_send_.size(), MSG_NOSIGNAL);

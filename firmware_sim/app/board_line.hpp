@@ -12,8 +12,8 @@
 namespace pinjaw::jaw_app {
 
 /// A board's serial line behind a Unix stream socket, as an emulator offers it. Nothing here waits. The board
-/// answers readings with what its valves are told, and new ones go out only then: a slow board gets fewer of
-/// them, never old ones.
+/// answers readings with what its valves are told, and new ones go out only once the last were answered: a
+/// slow board gets fewer of them, and does not work through a queue of old ones.
 class BoardLine final : public node::ExternalBoard {
  public:
   /// A sentence on what is wrong where nobody listens at `path`.
@@ -35,8 +35,9 @@ class BoardLine final : public node::ExternalBoard {
   link::PacketReader<link::kValvesBytes> packets_{link::kValvesMark};
   core::Valves valves_;
   int silent_ms_ = 0;
-  int asked_ms_ = 0;      ///< since readings went out
-  bool answered_ = true;  ///< the last ones
+  int asked_ms_ = 0;         ///< since readings went out
+  std::uint8_t number_ = 0;  ///< of the readings that went out last
+  bool answered_ = true;     ///< those
 };
 
 }  // namespace pinjaw::jaw_app

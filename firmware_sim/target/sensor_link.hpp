@@ -12,13 +12,14 @@
 
 /// Sensors and valves of a board whose jaws are simulated elsewhere, over a serial line: to the board what
 /// its sensors read, from it what its valves are told. Each packet is a mark, fields in little-endian order,
-/// and a CRC-8.
+/// the number of a reading, and a CRC-8. What the valves are told repeats the number of the reading that the
+/// board knew, so that who simulates the jaws can tell how old it is.
 namespace pinjaw::link {
 
 inline constexpr std::uint8_t kSensorsMark = 0xA5;
 inline constexpr std::uint8_t kValvesMark = 0x5A;
 inline constexpr std::size_t kSensorsBytes = 28;
-inline constexpr std::size_t kValvesBytes = 8;
+inline constexpr std::size_t kValvesBytes = 9;
 using SensorsPacket = std::array<std::uint8_t, kSensorsBytes>;
 using ValvesPacket = std::array<std::uint8_t, kValvesBytes>;
 
@@ -27,7 +28,13 @@ constexpr void seal(std::array<std::uint8_t, kSize>& packet) {
   packet[kSize - 1] = wire::crc_of<wire::Crc8>(std::span<const std::uint8_t>(packet).first(kSize - 1));
 }
 
-constexpr SensorsPacket pack(const core::Sensors& sensors) {
+/// Of a packet, which reading it is or answers.
+template <std::size_t kSize>
+constexpr std::uint8_t number_of(const std::array<std::uint8_t, kSize>& packet) {
+  return packet[kSize - 2];
+}
+
+constexpr SensorsPacket pack(const core::Sensors& sensors, std::uint8_t number) {
   SensorsPacket packet{};
   wire::ByteWriter out(packet);
   out.put(kSensorsMark, 1);
@@ -36,7 +43,7 @@ constexpr SensorsPacket pack(const core::Sensors& sensors) {
   out.put(static_cast<std::uint32_t>(sensors.supply_mbar), 4);
   out.put(static_cast<std::uint32_t>(sensors.separation_10um), 4);
   out.put((sensors.seats & 0x7FU) | (sensors.local_enable ? 0x80U : 0U), 1);
-  out.put(0, 1);
+  out.put(number, 1);
   seal(packet);
   return packet;
 }
@@ -55,13 +62,14 @@ constexpr core::Sensors sensors_of(const SensorsPacket& packet) {
   return sensors;
 }
 
-constexpr ValvesPacket pack(const core::Valves& valves) {
+constexpr ValvesPacket pack(const core::Valves& valves, std::uint8_t number) {
   ValvesPacket packet{};
   wire::ByteWriter out(packet);
   out.put(kValvesMark, 1);
   out.put(static_cast<std::uint8_t>(valves.spool), 1);
   out.put(static_cast<std::uint32_t>(valves.close_set_mbar), 4);
   out.put((valves.relax ? 1U : 0U) | (valves.pre_vent ? 2U : 0U) | (valves.supply_cut ? 4U : 0U), 1);
+  out.put(number, 1);
   seal(packet);
   return packet;
 }

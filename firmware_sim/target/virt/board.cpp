@@ -24,8 +24,9 @@ constexpr std::uintptr_t kUart = 0x09000000;
 constexpr std::uintptr_t kPciPorts = 0x3EFF0000;
 constexpr std::uintptr_t kPciConfiguration = 0x3F000000;
 constexpr std::uint32_t kKvaserPciCan = 0x840610E8;
-constexpr std::uint32_t kTick_ms = 4;  // chosen: an emulator inside User-Mode Linux does not keep up with 1
-constexpr std::uint32_t kTimerInterrupt = 27;     // virtual timer
+constexpr std::uint32_t kTick_ms = 1;
+constexpr std::uint32_t kTimerInterrupt = 27;  // virtual timer
+constexpr std::uint32_t kUartInterrupt = 33;
 constexpr std::uint32_t kFirstPciInterrupt = 35;  // INTA to INTD
 
 volatile std::uint32_t& word(std::uintptr_t address) {
@@ -53,13 +54,17 @@ void wake_at(std::uint64_t ticks) {
   asm volatile("mcr p15, 0, %0, c14, c3, 1" : : "r"(1));
 }
 
+/// Of a device, to this processor.
+void enable(std::uint32_t interrupt) {
+  word(kGicDistributor + 0x100 + interrupt / 32 * 4) = 1U << interrupt % 32;
+  *reinterpret_cast<volatile std::uint8_t*>(kGicDistributor + 0x800 + interrupt) = 1;
+}
+
 void start_interrupts() {
   word(kGicDistributor) = 1;
-  word(kGicDistributor + 0x100) = 1U << kTimerInterrupt;
-  word(kGicDistributor + 0x104) = 0xFU << (kFirstPciInterrupt - 32);
-  for (std::uint32_t i = 0; i < 4; ++i) {  // to this processor
-    *reinterpret_cast<volatile std::uint8_t*>(kGicDistributor + 0x800 + kFirstPciInterrupt + i) = 1;
-  }
+  enable(kTimerInterrupt);
+  enable(kUartInterrupt);
+  for (std::uint32_t i = 0; i < 4; ++i) enable(kFirstPciInterrupt + i);
   word(kGicProcessor + 4) = 0xFF;  // any priority
   word(kGicProcessor) = 1;
 }
@@ -113,9 +118,10 @@ struct Board {
   std::uint64_t tick = 0;        ///< when the last one was due
   std::uint64_t tick_ticks = 1;  ///< of kTick_ms
   link::PacketReader<link::kSensorsBytes> packets{link::kSensorsMark};
-  bool sensed = false;    ///< a packet has come
-  bool answered = false;  ///< the last one
-  core::Valves told;      ///< to the valves, last
+  std::uint8_t reading = 0;  ///< number of these sensors'
+  bool sensed = false;       ///< a packet has come
+  bool answered = false;     ///< the last one
+  core::Valves told;         ///< to the valves, last
 };
 
 constinit Board the_board;
@@ -137,6 +143,7 @@ void serve_link() {
     const auto packet = the_board.packets.take(static_cast<std::uint8_t>(word(kUart)));
     if (!packet) continue;
     the_board.sensors = link::sensors_of(*packet);
+    the_board.reading = link::number_of(*packet);
     the_board.sensed = true;
     the_board.answered = false;
   }
@@ -162,6 +169,7 @@ void start() {
   start_interrupts();
   word(kUart + 0x2C) = 0x70;   // eight bits, FIFO
   word(kUart + 0x30) = 0x301;  // on
+  word(kUart + 0x38) = 0x10;   // an interrupt for what comes: its FIFO holds half a packet
   while (!start_card()) {      // without its card a board has nothing to say
   }
   kCan.start();
@@ -207,7 +215,7 @@ void set_valves(const core::Valves& valves) {
   if (the_board.answered && valves == the_board.told) return;
   the_board.answered = true;
   the_board.told = valves;
-  for (const std::uint8_t byte : link::pack(valves)) {
+  for (const std::uint8_t byte : link::pack(valves, the_board.reading)) {
     while ((word(kUart + 0x18) & 0x20U) != 0) {  // the sender is full
     }
     word(kUart) = byte;

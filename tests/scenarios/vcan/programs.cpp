@@ -11,6 +11,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 
 #include "tests/support/places.hpp"
 
@@ -21,22 +22,16 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds kPoll(50);
 
-/// Short, as the path of a socket must be, and nobody else's, also where process numbers repeat (User-Mode
-/// Linux).
-std::string new_folder() {
-  std::string name = (std::filesystem::temp_directory_path() / "pinjaw-scenario-XXXXXX").string();
-  if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no folder for temporary files");
-  return name;
-}
-
 std::vector<std::string> jaw_command(const std::vector<std::string>& names, const std::string& interface,
-                                     const std::string& path) {
-  std::vector<std::string> command = {test::program("pinjaw-jaw")};
+                                     const std::string& path, const std::vector<std::string>& options,
+                                     std::vector<std::string> command) {
+  command.push_back(test::program("pinjaw-jaw"));
   for (const std::string& name : names) {
     const bool is_path = name.find('/') != std::string::npos;
     command.push_back(is_path ? name : config("controllers/" + name + ".yaml"));
   }
   command.insert(command.end(), {"--bus", "can:" + interface, "--world", path});
+  command.insert(command.end(), options.begin(), options.end());
   return command;
 }
 
@@ -92,8 +87,10 @@ bool shell(const std::string& command) {
   return std::system(("PATH=$PATH:/usr/sbin:/sbin; " + command).c_str()) == 0;
 }
 
-Controllers::Controllers(const std::vector<std::string>& names, const std::string& interface)
-    : path_(new_folder() + "/world"), program_(jaw_command(names, interface, path_), "", path_ + ".said") {
+Controllers::Controllers(const std::vector<std::string>& names, const std::string& interface,
+                         const std::vector<std::string>& options, std::vector<std::string> under)
+    : path_(new_folder() + "/world"),
+      program_(jaw_command(names, interface, path_, options, std::move(under)), "", path_ + ".said") {
   for (int tries = 0; tries < 1000 && !world_; ++tries) {
     if (auto world = bench::SocketWorld::connect(path_)) world_ = std::move(*world);
     std::this_thread::sleep_for(kPoll);
@@ -136,6 +133,12 @@ bool Controllers::comes_true(const std::function<bool(const bench::Truth&)>& con
     std::this_thread::sleep_for(kPoll);
   }
   return true;
+}
+
+std::string new_folder() {
+  std::string name = (std::filesystem::temp_directory_path() / "pinjaw-scenario-XXXXXX").string();
+  if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no folder for temporary files");
+  return name;
 }
 
 std::string config(const std::string& name) {

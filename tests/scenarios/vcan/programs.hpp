@@ -43,8 +43,10 @@ bool shell(const std::string& command);
 /// pinjaw-jaw with controllers on an interface, and its world.
 class Controllers {
  public:
-  /// `names`: files of configs/controllers, such as "arm", or paths.
-  explicit Controllers(const std::vector<std::string>& names, const std::string& interface = "vcan0");
+  /// `names`: files of configs/controllers, such as "arm", or paths. `options`: more of pinjaw-jaw's.
+  /// `under`: a program and its arguments that starts pinjaw-jaw.
+  explicit Controllers(const std::vector<std::string>& names, const std::string& interface = "vcan0",
+                       const std::vector<std::string>& options = {}, std::vector<std::string> under = {});
   Controllers(const Controllers&) = delete;
   Controllers& operator=(const Controllers&) = delete;
   ~Controllers();
@@ -66,6 +68,10 @@ class Controllers {
   Process program_;
   std::unique_ptr<bench::SocketWorld> world_;
 };
+
+/// A new folder for temporary files, short, as the path of a socket must be, and nobody else's, also where
+/// process numbers repeat (User-Mode Linux).
+std::string new_folder();
 
 std::string config(const std::string& name);
 std::string content(const std::string& path);
