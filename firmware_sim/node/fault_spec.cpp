@@ -78,6 +78,8 @@ constexpr std::array kKnown = {
     Known{"vent_stuck_open", stick<&Faults::vent, Stick::On>},
     Known{"cut_stuck_off", stick<&Faults::cut, Stick::Off>},
     Known{"cut_stuck_on", stick<&Faults::cut, Stick::On>},
+    Known{"soft_start_stuck_shut", stick<&Faults::soft_start, Stick::Off>},
+    Known{"soft_start_stuck_open", stick<&Faults::soft_start, Stick::On>},
     Known{"regulator_open", break_regulator<RegulatorFault::Open>},
     Known{"regulator_closed", break_regulator<RegulatorFault::Closed>},
     Known{"regulator_stuck", break_regulator<RegulatorFault::Stuck>},

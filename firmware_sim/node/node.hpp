@@ -70,6 +70,7 @@ class Node {
   [[nodiscard]] bool moves() const;
   /// For logs and tests; no run may decide by it.
   [[nodiscard]] const core::State& firmware() const { return firmware_; }
+  [[nodiscard]] const core::Valves& told_valves() const { return valves_; }
   [[nodiscard]] const plant::State& plant_state() const { return plant_; }
   [[nodiscard]] const Nvm& memory() const { return memory_; }
 

@@ -25,6 +25,13 @@ bool valve_on(Stick stick, bool told) {
   return stick == Stick::Free ? told : stick == Stick::On;
 }
 
+/// What the soft start leaves of the regulator's outlet.
+double behind_soft_start_pa(const AirParameters& air, const Faults& faults, double outlet_pa,
+                            const State& state) {
+  if (valve_on(faults.soft_start, state.soft_start_open)) return outlet_pa;
+  return std::min(outlet_pa, kAtmosphere_Pa + air.soft_start_pa);
+}
+
 PortFlow close_flow(const AirParameters& air, const Inputs& inputs, const Actuation& valves,
                     const State& state) {
   PortFlow flow;
@@ -40,9 +47,10 @@ PortFlow close_flow(const AirParameters& air, const Inputs& inputs, const Actuat
   if (state.spool != Spool::Close) return flow;
 
   const double outlet_pa = regulator_outlet_pa(inputs, state);
+  const double fed_pa = behind_soft_start_pa(air, inputs.faults, outlet_pa, state);
   const double cracking_pa = valves.relax ? 0.0 : air.check_cracking_pa;
-  if (outlet_pa - cracking_pa > state.close_pa) {
-    if (!valves.supply_cut) flow.add(mass_flow(air.fill, outlet_pa - cracking_pa, state.close_pa));
+  if (fed_pa - cracking_pa > state.close_pa) {
+    if (!valves.supply_cut) flow.add(mass_flow(air.fill, fed_pa - cracking_pa, state.close_pa));
   } else if (valves.relax) {
     flow.add(-mass_flow(air.relax, state.close_pa, std::min(outlet_pa, state.close_pa)));
   }
@@ -128,6 +136,16 @@ void step_keeper(const AirParameters& air, State& state) {
   }
 }
 
+/// The soft start's pilots: the chambers press against each other as they do on the piston.
+void step_soft_start(const AirParameters& air, State& state) {
+  const double pressing_pa = air_alone_n(air, state) / air.close_area_m2;
+  if (pressing_pa > air.soft_start_opens_pa) {
+    state.soft_start_open = true;
+  } else if (pressing_pa < air.soft_start_shuts_share * air.soft_start_opens_pa) {
+    state.soft_start_open = false;
+  }
+}
+
 }  // namespace
 
 Actuation actual_valves(const Inputs& inputs) {
@@ -165,6 +183,7 @@ void step_chambers(const Parameters& parameters, const Inputs& inputs, double dt
   state.ledger.mass_in_kg += (close.in_kg_s + open.in_kg_s) * dt_s;
   state.ledger.mass_out_kg += (close.out_kg_s + open.out_kg_s) * dt_s;
   step_keeper(air, state);
+  step_soft_start(air, state);
 }
 
 void take_stroke(const Parameters& parameters, double from_m, State& state) {

@@ -42,6 +42,7 @@ struct Faults {
   Stick relax = Stick::Free;             ///< the check valve's lift; On: it does not seat
   Stick vent = Stick::Free;              ///< the open chamber's pre-vent
   Stick cut = Stick::Free;               ///< the supply's cut-off; On: it cuts
+  Stick soft_start = Stick::Free;        ///< its way around the reducing valve; On: open
   RegulatorFault regulator = RegulatorFault::None;
   bool supply_lost = false;
   std::array<SensorFault, 4> pressure{};  ///< close A, close B, open A, open B

@@ -6,6 +6,9 @@ constexpr double kOpenAreaShare = 0.85;    // study: the rod takes the rest
 constexpr double kStudyArea_m2 = 2.59e-4;  // the same
 constexpr double kStudyStroke_m = 0.007;   // the same
 constexpr double kReliefShare = 1.07;      // the same: 150 N for 140 N
+constexpr double kPreVent_pa = 0.5e5;      // the same: gauge, left on the open side when the jaws start
+constexpr double kPressed_n = 17;          // chosen: rested seals let go at 12 N (9 N and 30 %)
+constexpr double kApproach_n = 25;  // chosen: a controller pushes with 24 N, 12 N light and 12 N of doubt
 
 /// Volume of the close chamber at mid-stroke.
 double mid_volume_m3(const AirParameters& air, double stroke_m) {
@@ -19,6 +22,12 @@ Parameters parameters_for(const Sizing& sizing) {
   parameters.air.close_area_m2 = sizing.max_squeeze_n / kSizingPressure_Pa;
   parameters.air.open_area_m2 = kOpenAreaShare * parameters.air.close_area_m2;
   parameters.air.relief_pa = kReliefShare * kSizingPressure_Pa;
+  parameters.air.soft_start_opens_pa = kPressed_n / parameters.air.close_area_m2;
+  parameters.air.soft_start_pa = kApproach_n / parameters.air.close_area_m2 + kOpenAreaShare * kPreVent_pa +
+                                 parameters.air.check_cracking_pa;
+  for (Restriction* line : {&parameters.air.relax, &parameters.air.meter_out, &parameters.air.open_fill}) {
+    line->conductance_m3_s_pa *= parameters.air.close_area_m2 / kStudyArea_m2;
+  }
   parameters.jaw.max_separation_m = sizing.max_separation_m;
   parameters.jaw.stroke_m = (sizing.max_separation_m - sizing.min_separation_m) / 2;
   // The orifice is sized with the volume behind it, so that a regulator stuck open adds 0.45 N/ms at most.

@@ -31,6 +31,12 @@ enum class AirLaw : std::uint8_t {
 /// Let go, it gives what the air lacks of `keeper_n` and nothing more, so that the controller need not know
 /// of it: what it infers from pressure is then low, never high. Its price: after RETAIN the receiver's light
 /// squeeze is the keeper's until it opens.
+///
+/// A regulator that sticks open behind resting seals would throw the jaws at the part, faster than any valve
+/// shuts: once the seals let go, 0.1 mm of travel under 20 N too much is the speed that a touch may have. So
+/// the close line has a soft start of two standard valves. A fixed reducing valve passes `soft_start_pa`,
+/// more than any approach needs; a sequence valve, piloted by both chambers against each other, opens a way
+/// around it once they press with more than driving the jaws takes, that is when the jaws stand at the part.
 struct AirParameters {
   double close_area_m2 = 0;  ///< effective: sum of both jaws' force per Pa, lever losses included
   double open_area_m2 = 0;
@@ -38,7 +44,10 @@ struct AirParameters {
   AirLaw law = AirLaw::Polytropic;
   double polytropic = 1.2;                          // the same: between 1.0 (slow) and 1.4 (fast)
   Restriction fill{0.01 * kDm3PerSecondBar, 0.3};   // the same: orifice in the close line, 0.45 N/ms at most
-  Restriction relax{0.05 * kDm3PerSecondBar, 0.3};  // the same, throttled 5/2: the close chamber's way out
+  double soft_start_pa = 0;                         ///< gauge, let into the close line before the jaws press
+  double soft_start_opens_pa = 0;                   ///< of the close side over the open, by their areas
+  double soft_start_shuts_share = 0.7;              // chosen: of that; no chatter at a light squeeze
+  Restriction relax{0.05 * kDm3PerSecondBar, 0.3};  // study, throttled 5/2: the close chamber's way out
   // chosen: the open chamber's way out while closing; some 20 mm/s a jaw at 12 N
   Restriction meter_out{0.0065 * kDm3PerSecondBar, 0.3};
   Restriction open_fill{0.05 * kDm3PerSecondBar, 0.3};  // as relax
@@ -109,7 +118,8 @@ struct Parameters {
 
 constexpr double kSizingPressure_Pa = 5.4e5;  // gauge; study: 140 N from 2.59e-4 m2
 
-/// The figures above with the area, stroke, relief and fill orifice that follow from `sizing`.
+/// The figures above with the area, stroke, relief, soft start and orifices that follow from `sizing`: a
+/// bigger gripper moves as fast under the same force.
 Parameters parameters_for(const Sizing& sizing);
 
 }  // namespace pinjaw::plant

@@ -67,6 +67,7 @@ struct State {
   double close_K = kTemperature_K;  ///< stays with AirLaw::Polytropic, which has no temperature
   double open_K = kTemperature_K;
   bool keeper_engaged = false;
+  bool soft_start_open = false;  ///< the way around the reducing valve
   FrictionState friction;
 
   double supply_pa = 0;  ///< absolute

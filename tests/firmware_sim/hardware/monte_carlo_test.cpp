@@ -69,6 +69,8 @@ void draw_plant(Draws& draws, plant::Parameters& p) {
   vary(p.spool.off_delay_s);
   vary(p.sensors.pressure_noise_pa);
   vary(p.sensors.pressure_lag_s);
+  vary(p.air.soft_start_pa);
+  vary(p.air.soft_start_opens_pa);
 }
 
 struct Result {

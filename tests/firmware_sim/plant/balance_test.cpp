@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include "tests/firmware_sim/plant/stand.hpp"
@@ -145,6 +146,7 @@ double filled_pa(double wall_w_K, AirLaw law, double exponent) {
   stand.parameters.air.wall_w_K = wall_w_K;
   stand.parameters.air.polytropic = exponent;
   stand.parameters.air.close_area_m2 = 1e-9;  // pushes nothing
+  stand.inputs.faults.soft_start = Stick::On;
   stand.inputs.actuation = {.spool = Spool::Close, .close_set_pa = 6e5};
   stand.run(0.15);
   return stand.state.close_pa;
@@ -163,32 +165,40 @@ TEST(Balance,
   EXPECT_NEAR(usual_pa / filled_pa(0, AirLaw::Polytropic, 1.2), 1.0, 0.1);
 }
 
-/// Where the jaws are 50 ms into a free closing, more than half way.
-double closing_m(AirLaw law, double dt_s) {
+/// A free closing in full swing: past the soft start at once, or through it.
+struct Swing {
+  const char* name = "";
+  AirLaw law = AirLaw::Polytropic;
+  Stick soft_start = Stick::On;
+  double time_s = 0.05;
+};
+
+/// Where the jaws are at its time.
+double closing_m(const Swing& swing, double dt_s) {
   Stand stand = study_stand();
-  stand.parameters.air.law = law;
+  stand.parameters.air.law = swing.law;
   stand.parameters.spool = {.on_delay_s = 0, .off_delay_s = 0};
+  stand.inputs.faults.soft_start = swing.soft_start;
   stand.inputs.contact.present = false;
   stand.inputs.faults.regulator = RegulatorFault::Open;
   stand.inputs.actuation = {.spool = Spool::Close, .close_set_pa = 6e5};
-  const auto steps = static_cast<int>(std::lround(0.05 / dt_s));
+  const auto steps = static_cast<int>(std::lround(swing.time_s / dt_s));
   for (int i = 0; i < steps; ++i) step(stand.parameters, stand.inputs, dt_s, stand.state);
   return stand.state.displacement_m;
 }
 
 TEST(Balance, the_error_of_a_step_is_of_first_order) {
-  for (const AirLaw law : {AirLaw::Polytropic, AirLaw::EnergyBalance}) {
-    const double best_m = closing_m(law, 0.625e-6);
+  for (const Swing& swing :
+       {Swing{.name = "polytropic"}, Swing{.name = "energy balance", .law = AirLaw::EnergyBalance},
+        Swing{.name = "soft start", .soft_start = Stick::Free, .time_s = 0.12}}) {
+    const double best_m = closing_m(swing, 0.625e-6);
     std::vector<double> errors_m;
     for (const double dt_s : {80e-6, 40e-6, 20e-6, 10e-6}) {
-      errors_m.push_back(std::abs(closing_m(law, dt_s) - best_m));
+      errors_m.push_back(std::abs(closing_m(swing, dt_s) - best_m));
     }
     ASSERT_GT(best_m, 1e-3);
     const double order = std::log2(errors_m.front() / errors_m.back()) / 3;
-    test::figure("PLANT-BALANCE",
-                 law == AirLaw::Polytropic ? "order of the step's error, polytropic"
-                                           : "order of the step's error, energy balance",
-                 order, "1");
+    test::figure("PLANT-BALANCE", std::string("order of the step's error, ") + swing.name, order, "1");
     EXPECT_GT(order, 0.9);
     EXPECT_LT(order, 1.2);
     EXPECT_LT(errors_m[2], 1e-4 * 7) << "at 20 us, of 7 mm";

@@ -8,13 +8,14 @@ namespace pinjaw::plant {
 namespace {
 
 /// A plain 5/2 valve of conductance `dm3_s_bar` at 6 bar, which held the jaws open before: no regulator, no
-/// check valve, no orifices.
+/// check valve, no soft start, no orifices.
 Stand plain_valve(double dm3_s_bar) {
   Stand stand = study_stand();
   AirParameters& air = stand.parameters.air;
   air.fill.conductance_m3_s_pa = dm3_s_bar * kDm3PerSecondBar;
   air.meter_out = air.fill;
   air.check_cracking_pa = 0;
+  stand.inputs.faults.soft_start = Stick::On;
   air.relief_pa = 20e5;
   stand.state.open_pa = kAtmosphere_Pa + 6e5;
   stand.parameters.spool = {.on_delay_s = 0, .off_delay_s = 0};
