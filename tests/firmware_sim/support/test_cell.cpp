@@ -20,7 +20,7 @@ node::Figures figures_of(const TestGrip& grip) {
   node::Figures figures;
   figures.node = grip.node;
   figures.passive = grip.passive;
-  figures.kit_id = kKitId;
+  figures.kit_id = grip.layout ? grip.layout->kit_id : kKitId;
   figures.key = grip.key;
   figures.can_fd = grip.can_fd;
   figures.force_uncertainty_n = grip.passive ? 0 : kUncertainty_n;
@@ -31,6 +31,7 @@ node::Figures figures_of(const TestGrip& grip) {
 }  // namespace
 
 wire::Layout bare_layout(const TestGrip& grip, std::uint16_t kit_id) {
+  if (grip.layout) return *grip.layout;
   wire::Layout layout;
   layout.node_class = grip.passive ? wire::NodeClass::Passive : wire::NodeClass::Gripper;
   layout.passive = grip.passive;

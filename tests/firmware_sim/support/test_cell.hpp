@@ -22,6 +22,7 @@ struct TestGrip {
   double limit_n = 140;
   std::optional<wire::Key> key{};  ///< the controller asks for; the scripted host knows none
   bool can_fd = false;
+  std::optional<wire::Layout> layout{};  ///< of a plan; nothing: one of the figures above
 };
 
 /// A passive station 3 and two grippers 1 and 2, all of them peers of each other.
