@@ -84,14 +84,14 @@ constexpr const Address& address_of(MessageType type) {
 
 /// The same of a field, in two words that fold to constants wherever the row is one.
 struct FieldRule {
-  enum Kind : std::uint32_t { Number, NumberOrUnknown, Named, FaultCodes };
+  enum Kind : std::uint32_t { Number, Named, FaultCodes };
   std::uint32_t shape = 0;  ///< start, length, kind: 8 bits each
   std::uint32_t names = 0;  ///< Named: a bit for each legal value
 
   constexpr FieldRule(std::uint32_t shape_of, std::uint32_t names_of) : shape(shape_of), names(names_of) {}
   [[gnu::always_inline]] constexpr explicit FieldRule(const FieldSpec& field)
       : shape(field.start | std::uint32_t{field.length} << 8), names(field.value_bits) {
-    Kind kind = field.all_ones_is_unknown ? NumberOrUnknown : Number;
+    Kind kind = Number;
     if (!field.values.empty()) kind = names != 0 ? Named : FaultCodes;
     shape |= kind << 16;
   }

@@ -171,11 +171,11 @@ inline constexpr std::array kFaultCodes = {FaultCode::None,          FaultCode::
                                            FaultCode::InDoubt,       FaultCode::HandoffAborted,
                                            FaultCode::ManualRelease};
 
+/// 0 also for a number that is no code.
 constexpr std::uint8_t index_of(FaultCode code) {
-  for (std::size_t i = 0; i < kFaultCodes.size(); ++i) {
-    if (kFaultCodes[i] == code) return static_cast<std::uint8_t>(i);
-  }
-  return 0;
+  std::size_t index = kFaultCodes.size() - 1;
+  while (index > 0 && kFaultCodes[index] != code) --index;
+  return static_cast<std::uint8_t>(index);
 }
 
 /// Nothing for an index that names no fault.

@@ -41,7 +41,7 @@ class Crc8 {
  public:
   constexpr void add(std::uint8_t byte) {
     unsigned crc = crc_ ^ unsigned { byte };
-    crc = detail::kCrc8Table[crc >> 4] ^ (crc << 4 & 0xFFU);
+    crc = detail::kCrc8Table[crc >> 4] ^ static_cast<std::uint8_t>(crc << 4);
     crc_ = static_cast<std::uint8_t>(detail::kCrc8Table[crc >> 4] ^ (crc << 4));
   }
   [[nodiscard]] constexpr std::uint8_t value() const { return crc_ ^ 0xFFU; }

@@ -75,14 +75,13 @@ constexpr std::optional<FrameError> dispatch(const Frame& frame, Handler&& handl
       return detail::take<LayoutStatus>(frame, handler);
     case MessageType::Identity:
       return detail::take<Identity>(frame, handler);
-    case MessageType::TransferRequest:
-    case MessageType::TransferResponse:
-      break;
+    default: {  // one of the two that carry segments
+      const auto segment = parse_segment(frame);
+      if (!segment) return segment.error();
+      handler(*segment);
+      return std::nullopt;
+    }
   }
-  const auto segment = parse_segment(frame);
-  if (!segment) return segment.error();
-  handler(*segment);
-  return std::nullopt;
 }
 
 }  // namespace pinjaw::wire

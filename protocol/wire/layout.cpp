@@ -1,5 +1,6 @@
 #include "protocol/wire/layout.hpp"
 
+#include <string_view>
 #include <utility>
 
 #include "protocol/wire/bits.hpp"
@@ -97,6 +98,7 @@ TransferStatus read_head(ByteReader& in, Layout& layout) {
   return TransferStatus::Ok;
 }
 
+/// Of a record that ends before, what follows finds nothing to read and says so.
 TransferStatus read_numbers(ByteReader& in, Layout& layout) {
   const auto u16 = [&in] { return static_cast<std::uint16_t>(in.take(2)); };
   layout.separation_open_10um = u16();
@@ -109,14 +111,11 @@ TransferStatus read_numbers(ByteReader& in, Layout& layout) {
   layout.stable_ms = u16();
   const std::uint32_t passive = in.take(1);
   layout.passive = passive == 1;
-  if (in.truncated()) return TransferStatus::Length;
-  if (passive > 1) return TransferStatus::PassiveFields;
-  return TransferStatus::Ok;
+  return passive > 1 ? TransferStatus::PassiveFields : TransferStatus::Ok;
 }
 
 TransferStatus read_peers(ByteReader& in, Layout& layout) {
   layout.peer_count = static_cast<std::uint8_t>(in.take(1));
-  if (in.truncated()) return TransferStatus::Length;
   if (layout.peer_count > kMaxPeers) return TransferStatus::Peers;
   for (LayoutPeer& peer : std::span(layout.peers).first(layout.peer_count)) {
     peer.node = static_cast<std::uint8_t>(in.take(1));
@@ -137,30 +136,30 @@ TransferStatus check_sum(ByteReader& in, std::span<const std::uint8_t> bytes, st
 }
 
 bool has_duplicate_hole(std::span<const LayoutPin> pins) {
-  for (std::size_t i = 0; i < pins.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      if (pins[i].jaw == pins[j].jaw && pins[i].column == pins[j].column && pins[i].row == pins[j].row)
+  for (const LayoutPin& pin : pins) {
+    for (const LayoutPin& other : pins) {
+      if (&other != &pin && other.jaw == pin.jaw && other.column == pin.column && other.row == pin.row)
         return true;
     }
   }
   return false;
 }
 
-std::size_t pins_of(const Layout& layout, Jaw jaw) {
-  std::size_t count = 0;
-  for (const LayoutPin& pin : layout.used_pins()) count += pin.jaw == jaw ? 1 : 0;
-  return count;
+/// Precondition: there is a pin.
+bool on_both_jaws(std::span<const LayoutPin> pins) {
+  for (const LayoutPin& pin : pins) {
+    if (pin.jaw != pins.front().jaw) return true;
+  }
+  return false;
 }
 
 TransferStatus check_passive(const Layout& layout) {
-  const bool one_jaw = pins_of(layout, Jaw::Left) == 0 || pins_of(layout, Jaw::Right) == 0;
   const bool forceless = layout.f_light_dn == 0 && layout.f_required_dn == 0;
-  return one_jaw && forceless ? TransferStatus::Ok : TransferStatus::PassiveFields;
+  return forceless && !on_both_jaws(layout.used_pins()) ? TransferStatus::Ok : TransferStatus::PassiveFields;
 }
 
 TransferStatus check_gripper(const Layout& layout) {
-  if (pins_of(layout, Jaw::Left) == 0 || pins_of(layout, Jaw::Right) == 0)
-    return TransferStatus::JawWithoutPins;
+  if (!on_both_jaws(layout.used_pins())) return TransferStatus::JawWithoutPins;
   const unsigned reach = unsigned{layout.separation_contact_10um} + layout.separation_tolerance_10um;
   if (layout.separation_open_10um <= reach || layout.separation_open_10um > kMaxSeparation_10um) {
     return TransferStatus::Separation;
@@ -189,19 +188,15 @@ TransferStatus check_content(const Layout& layout) {
   return status == TransferStatus::Ok ? check_peers(layout) : status;
 }
 
-constexpr int digit(char c) {
-  if (c >= '0' && c <= '9') return c - '0';
-  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
-  return -1;
-}
-
+/// The first `count` digits' number; 0 where there are fewer.
 std::uint32_t first_digits(std::span<const char> hex, std::size_t count) {
+  constexpr std::string_view kDigits = "0123456789abcdefABCDEF";
   if (hex.size() < count) return 0;
   std::uint32_t value = 0;
   for (const char c : hex.first(count)) {
-    if (digit(c) < 0) return 0;
-    value = value << 4 | static_cast<std::uint32_t>(digit(c));
+    const std::size_t place = kDigits.find(c);
+    if (place == std::string_view::npos) return 0;
+    value = value << 4 | static_cast<std::uint32_t>(place < 16 ? place : place - 6);
   }
   return value;
 }

@@ -40,6 +40,7 @@ class CounterCheck {
     }
     heard_ = true;
     strayed_ = false;
+    stray_ = 0;
     last_ = counter;
     if (in_a_row_ < kInARow) ++in_a_row_;
     return qualified() ? CounterVerdict::Qualified : CounterVerdict::Qualifying;
@@ -55,7 +56,7 @@ class CounterCheck {
   }
 
   std::uint8_t last_ = 0;
-  std::uint8_t stray_ = 0;  ///< of the last frame out of order
+  std::uint8_t stray_ = 0;  ///< the last frame's counter where it was out of order
   std::uint8_t in_a_row_ = 0;
   bool heard_ = false;
   bool strayed_ = false;  ///< the last frame was out of order

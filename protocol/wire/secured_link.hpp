@@ -77,21 +77,17 @@ constexpr std::optional<Synchronisation> synchronisation_of(const Frame& frame) 
 }
 
 /// Whose frame it says it is: 0 for a host's. By itself, not by the table, which a controller need not keep.
+/// What a host says to all has node 0 in its id.
 constexpr std::uint8_t sender_of(const Identifier& identifier) {
-  switch (identifier.type) {
-    case MessageType::HostHeartbeat:
-    case MessageType::Time:
-    case MessageType::Command:
-    case MessageType::TransferRequest:
-      return kHostNode;
-    default:
-      return identifier.node;
-  }
+  const bool to_node =
+      identifier.type == MessageType::Command || identifier.type == MessageType::TransferRequest;
+  return to_node ? kHostNode : identifier.node;
 }
 static_assert([] {
   for (const MessageSpec& spec : kMessages) {
     const bool host = spec.direction == Direction::HostToAll || spec.direction == Direction::HostToNode;
-    if (host != (sender_of({spec.type, 7}) == kHostNode)) return false;
+    const std::uint8_t node = spec.per_node ? 7 : 0;
+    if (sender_of({spec.type, node}) != (host ? kHostNode : node)) return false;
   }
   return true;
 }());
@@ -117,7 +113,7 @@ class SecuredLink {
   /// `first`: a number that this sender has never used, nor any after it.
   constexpr SecuredLink(std::uint8_t self, FrameNumber first) : number_(first), self_(self) {}
 
-  /// Whom it hears: a bit for each source, kSenders at most.
+  /// Whom it hears: a bit for each source, kSenders at most. One more takes the first's place.
   constexpr void follow(std::uint16_t sources) { sources_ = sources; }
 
   /// The next number to be used.
@@ -232,7 +228,7 @@ class SecuredLink {
     return source != self_ && source <= kLastNode && (sources_ >> source & 1U) != 0;
   }
 
-  /// The place of a source that is followed: its own, else one of somebody who no longer is.
+  /// The place of a source that is followed: its own, else one of somebody who no longer is, else the first.
   constexpr Sender& place_of(std::uint8_t source) {
     Sender* place = &senders_[0];
     for (Sender& sender : senders_) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 
@@ -70,7 +71,7 @@ class CommandGate {
   [[nodiscard]] constexpr const Acknowledge& last_answer() const { return answer_; }
   /// For ACK.NEXT_SEQ; 255 also when nothing is left.
   [[nodiscard]] constexpr std::uint8_t next_sequence() const {
-    return static_cast<std::uint8_t>(next_ < kSequenceEnd ? next_ : kSequenceEnd - 1);
+    return static_cast<std::uint8_t>(std::min<unsigned>(next_, kSequenceEnd - 1));
   }
   friend constexpr bool operator==(const CommandGate&, const CommandGate&) = default;
 

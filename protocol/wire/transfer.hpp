@@ -29,8 +29,7 @@ enum class SegmentKind : std::uint8_t { Single, First, Consecutive, FlowControl,
 enum class FlowStatus : std::uint8_t { Continue = 0, Wait = 1, Overflow = 2 };
 
 constexpr SegmentKind kind_of(const Payload& segment) {
-  const unsigned kind = segment[0] >> 4;
-  return kind <= 3 ? static_cast<SegmentKind>(kind) : SegmentKind::Unknown;
+  return std::min(static_cast<SegmentKind>(segment[0] >> 4), SegmentKind::Unknown);
 }
 
 enum class TransferEnd : std::uint8_t {
@@ -99,7 +98,6 @@ class TransferReceiver {
 
   constexpr void abandon(TransferEnd end) {
     busy_ = false;
-    silence_.stop();
     end_ = end;
   }
 
@@ -176,9 +174,9 @@ class TransferSender {
  public:
   /// Begins to send; what was under way is dropped. False where the length is not 1..256.
   constexpr bool start(std::span<const std::uint8_t> message) {
-    if (message.empty() || message.size() > kMaxTransferBytes) return false;
+    if (!start(message.size())) return false;
     std::copy(message.begin(), message.end(), message_.begin());
-    return start(message.size());
+    return true;
   }
 
   /// Room to write a message into before start(length) sends it; drops what was under way.
@@ -202,7 +200,6 @@ class TransferSender {
     switch (segment[0] & 0xFU) {
       case static_cast<unsigned>(FlowStatus::Continue):
         waits_ = 0;
-        unlimited_ = segment[1] == 0;
         block_left_ = segment[1];
         gap_ms_ = gap_of(segment[2]);
         timer_.stop();
@@ -244,13 +241,12 @@ class TransferSender {
 
   /// STmin in whole milliseconds: 0xF1..0xF9 are 100 to 900 us, reserved values the longest time (9.6.5.5).
   static constexpr std::uint8_t gap_of(std::uint8_t stmin) {
-    if (stmin <= 0x7F) return std::max(stmin, kSegmentGap_ms);
-    return stmin >= 0xF1 && stmin <= 0xF9 ? kSegmentGap_ms : std::uint8_t{0x7F};
+    if (stmin >= 0xF1 && stmin <= 0xF9) return kSegmentGap_ms;
+    return std::clamp<std::uint8_t>(stmin, kSegmentGap_ms, 0x7F);
   }
 
   constexpr void stop(TransferEnd end) {
     phase_ = Phase::Idle;
-    timer_.stop();
     end_ = end;
   }
 
@@ -288,7 +284,7 @@ class TransferSender {
     fill(segment, 1);
     if (sent_ == length_) {
       stop(TransferEnd::Done);
-    } else if (!unlimited_ && --block_left_ == 0) {
+    } else if (--block_left_ == 0) {
       wait();
     } else {
       timer_.start(static_cast<std::uint16_t>(gap_ms_ + kSegmentOnBus_ms));
@@ -300,12 +296,12 @@ class TransferSender {
   std::uint16_t length_ = 0;
   std::uint16_t sent_ = 0;
   std::uint8_t number_ = 0;
-  std::uint8_t block_left_ = 0;
+  std::uint8_t block_left_ = 0;  ///< from 0, which is no limit, it counts 256: more than a message has
   std::uint8_t gap_ms_ = kSegmentGap_ms;
   std::uint8_t waits_ = 0;
-  bool unlimited_ = false;
+  static_assert(kMaxTransferBytes / 7 < 256);
   Phase phase_ = Phase::Idle;
-  Countdown timer_;
+  Countdown timer_;  ///< meant where the phase is Waiting or Streaming
   TransferEnd end_ = TransferEnd::None;
 };
 

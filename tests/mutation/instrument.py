@@ -171,11 +171,13 @@ class Walk:
                 return
             return self.initializer(node, function, result)
         if kind == K.FIELD_DECL:
+            if node.is_bitfield():  # its width, which is a type, is all that the tree shows
+                return
             return self.initializer(node, self.scope(node), result)
         if kind == K.PARM_DECL:
             return
         if kind == K.LAMBDA_EXPR:
-            result = None
+            result, followed = None, False
         if kind == K.CALL_EXPR and node.spelling == "keeps":
             return
         if kind.is_expression():

@@ -62,7 +62,7 @@ def reach(program, folder):
 def compiler_kills(mutant, folder):
     """Whether the compiler refuses its own checks with this mutant in what it evaluates."""
     return subprocess.run(["g++", "-std=c++20", "-w", "-Wno-narrowing", "-fsyntax-only", f"-DPINJAW_MUTANT={mutant['id']}",
-                           f"-I{folder / 'tree'}", f"-I{ROOT}", ROOT / "tests/protocol/wire/constant_test.cpp"],
+                           f"-I{folder / 'tree'}", f"-I{ROOT}", "-xc++", ROOT / "tests/protocol/wire/constant_checks.hpp"],
                           capture_output=True).returncode != 0
 
 
@@ -109,12 +109,12 @@ def main():
         if verdict != "survived" and test:
             killers[test[0]] += 1
 
-    wire = [m for m in chosen if m["verdict"] == "unreached" and m["file"].startswith("protocol/wire/")]
+    worst = ("survived", "unreached")
+    wire = [m for m in chosen if m["verdict"] in worst and m["file"].startswith("protocol/wire/")]
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         for mutant, killed in zip(wire, pool.map(lambda m: compiler_kills(m, folder), wire)):
-            mutant["verdict"] = "not compiled" if killed else "unreached"
+            mutant["verdict"] = "not compiled" if killed else mutant["verdict"]
 
-    worst = ("survived", "unreached")
     fresh = {}
     for mutant in chosen:
         key = key_of(mutant)

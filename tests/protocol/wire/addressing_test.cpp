@@ -52,6 +52,7 @@ TEST(Addressing, parses_no_message_from_another_ones_frame) {
   const Frame frame = pack(Force{.f_high_dn = 3}, {.node = 4, .counter = 2});
   EXPECT_EQ(parse<NodeState>(frame).error(), FrameError::UnknownId);
   EXPECT_EQ(parse<Force>(frame)->label, (Label{4, 2}));
+  EXPECT_FALSE(parse_segment(frame).has_value());
   EXPECT_EQ(parse_segment(frame).error(), FrameError::UnknownId);
 }
 
@@ -157,6 +158,7 @@ TEST(Messages, that_say_nothing_are_empty_behind_their_header) {
   EXPECT_EQ(to_word(pack(NodeState{}, {.node = 1}).data) >> 16, 0x00FFFFFFE000U);
   EXPECT_EQ(to_word(pack(Force{}, {.node = 1}).data) >> 16, 0xFFFFFFFFFFFFU);
   EXPECT_EQ(to_word(pack(Pneumatics{}, {.node = 1}).data) >> 16, 0xFC0FFFFFFFFFU);
+  EXPECT_EQ(Identity{}.page, IdentityPage::Product);
   for (std::uint8_t page = 0; page < 5; ++page) {
     const Frame frame = pack(Identity{.page = static_cast<IdentityPage>(page)}, {.node = 1});
     EXPECT_EQ(to_word(frame.data) >> 16, page);

@@ -88,6 +88,12 @@ std::array<std::uint8_t, Identification::kBytes> answer_of(const Identification&
   return bytes;
 }
 
+TEST(Identification, of_a_controller_that_said_nothing_is_all_zero) {
+  std::array<std::uint8_t, 13> nothing{};
+  nothing[1] = static_cast<std::uint8_t>(NodeClass::Gripper);
+  EXPECT_EQ(answer_of({}), nothing);
+}
+
 TEST(Identification, travels_in_thirteen_bytes_in_this_order) {
   EXPECT_EQ(answer_of(kSomeone),
             (std::array<std::uint8_t, 13>{5, 2, 0xC1, 0xAC, 0x78, 0x05, 120, 0, 0xEF, 0xBE, 0xAD, 0xDE, 1}));

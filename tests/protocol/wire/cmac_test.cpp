@@ -2,22 +2,20 @@
 #include "protocol/wire/cmac.hpp"
 
 #include <gtest/gtest.h>
-#include <openssl/core_names.h>
-#include <openssl/evp.h>
-#include <openssl/params.h>
 
-#include <memory>
 #include <random>
 #include <string>
 #include <vector>
 
-#include "protocol/wire/commands.hpp"
-#include "protocol/wire/seal.hpp"
+#include "tests/protocol/wire/reference_mac.hpp"
 #include "tests/support/figures.hpp"
 
-/// AES-128 and its CMAC against the standards' examples and OpenSSL; what a command's MAC covers.
+/// AES-128 and its CMAC against the standards' examples and OpenSSL.
 namespace pinjaw::wire {
 namespace {
+
+using testing::openssl_aes;
+using testing::openssl_cmac;
 
 std::vector<std::uint8_t> bytes_of(const std::string& hex) {
   std::vector<std::uint8_t> bytes;
@@ -32,33 +30,6 @@ AesBlock block_of(const std::string& hex) {
   const std::vector<std::uint8_t> bytes = bytes_of(hex);
   std::copy(bytes.begin(), bytes.end(), block.begin());
   return block;
-}
-
-AesBlock openssl_aes(const Key& key, const AesBlock& block) {
-  const std::unique_ptr<EVP_CIPHER_CTX, decltype(&EVP_CIPHER_CTX_free)> context(EVP_CIPHER_CTX_new(),
-                                                                                &EVP_CIPHER_CTX_free);
-  AesBlock out{};
-  int length = 0;
-  EXPECT_EQ(EVP_EncryptInit_ex(context.get(), EVP_aes_128_ecb(), nullptr, key.data(), nullptr), 1);
-  EVP_CIPHER_CTX_set_padding(context.get(), 0);
-  EXPECT_EQ(EVP_EncryptUpdate(context.get(), out.data(), &length, block.data(), 16), 1);
-  return out;
-}
-
-AesBlock openssl_cmac(const Key& key, const std::vector<std::uint8_t>& message) {
-  const std::unique_ptr<EVP_MAC, decltype(&EVP_MAC_free)> kind(EVP_MAC_fetch(nullptr, "CMAC", nullptr),
-                                                               &EVP_MAC_free);
-  const std::unique_ptr<EVP_MAC_CTX, decltype(&EVP_MAC_CTX_free)> context(EVP_MAC_CTX_new(kind.get()),
-                                                                          &EVP_MAC_CTX_free);
-  std::string cipher = "AES-128-CBC";
-  const OSSL_PARAM parameters[] = {OSSL_PARAM_construct_utf8_string(OSSL_MAC_PARAM_CIPHER, cipher.data(), 0),
-                                   OSSL_PARAM_construct_end()};
-  AesBlock out{};
-  std::size_t length = 0;
-  EXPECT_EQ(EVP_MAC_init(context.get(), key.data(), key.size(), parameters), 1);
-  EXPECT_EQ(EVP_MAC_update(context.get(), message.data(), message.size()), 1);
-  EXPECT_EQ(EVP_MAC_final(context.get(), out.data(), &length, out.size()), 1);
-  return out;
 }
 
 // FIPS 197, appendix C.1.
@@ -102,75 +73,6 @@ TEST(Cmac, agrees_with_openssl_on_random_keys_and_messages_of_every_length) {
     }
   }
   test::figure("AUTH-MAC", "CMACs and AES blocks equal to OpenSSL's", compared, "pairs");
-}
-
-constexpr Key kKey{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16};
-
-Command squeeze() {
-  Command command = squeeze_command({520, 1400});
-  command.sequence = 9;
-  return command;
-}
-
-TEST(Seal, is_the_truncated_cmac_of_what_a_command_says_and_belongs_to) {
-  const std::vector<std::uint8_t> message{0x20,      2,    9,    4,    520 & 0xFF, 520 >> 8, 1400 & 0xFF,
-                                          1400 >> 8, 0x78, 0x56, 0x34, 0x12,       77,       0};
-  const AesBlock mac = openssl_cmac(kKey, message);
-  EXPECT_EQ(sealed(kKey, 2, squeeze(), {0x12345678, 77}).session, mac[0] << 8 | mac[1]);
-}
-
-TEST(Seal, one_of_65536_values_is_right) {
-  int right = 0;
-  Command guess = squeeze();
-  for (std::uint32_t value = 0; value < 0x10000; ++value) {
-    guess.session = static_cast<std::uint16_t>(value);
-    if (guess.session == command_mac(kKey, 2, squeeze(), {5, 77})) ++right;
-  }
-  EXPECT_EQ(right, 1);
-}
-
-/// The share of 2^16 changed commands whose old MAC is still right, for one way of changing them.
-template <class Change>
-double share_that_passes(Change change) {
-  int passed = 0;
-  constexpr int kTries = 0x10000;
-  for (int i = 0; i < kTries; ++i) {
-    Command command = squeeze();
-    command.sequence = static_cast<std::uint8_t>(i & 0xFF);
-    command.a = static_cast<std::uint16_t>(i >> 4);
-    Freshness freshness{static_cast<std::uint32_t>(i) * 2654435761U, 77};
-    std::uint8_t node = 2;
-    const Command said = sealed(kKey, node, command, freshness);
-    Command heard = said;
-    change(heard, node, freshness);
-    if (seal_is_right(kKey, node, heard, freshness)) ++passed;
-  }
-  return passed / static_cast<double>(kTries);
-}
-
-TEST(Seal, of_another_command_node_number_or_epoch_passes_no_more_often_than_a_guess) {
-  // Of 2^16 guesses at 2^-16 more than 8 come with a probability below 1e-5; these are the same each run.
-  const double most = 8.0 / 0x10000;
-  EXPECT_LE(share_that_passes([](Command& c, std::uint8_t&, Freshness&) { c.sequence ^= 1U; }), most);
-  EXPECT_LE(share_that_passes([](Command& c, std::uint8_t&, Freshness&) { c.op = Op::Offer; }), most);
-  EXPECT_LE(share_that_passes([](Command& c, std::uint8_t&, Freshness&) { c.argument ^= 8U; }), most);
-  EXPECT_LE(share_that_passes([](Command& c, std::uint8_t&, Freshness&) { c.a ^= 0x800U; }), most);
-  EXPECT_LE(share_that_passes([](Command& c, std::uint8_t&, Freshness&) { c.b ^= 1U; }), most);
-  EXPECT_LE(share_that_passes([](Command&, std::uint8_t& node, Freshness&) { node = 3; }), most);
-  EXPECT_LE(share_that_passes([](Command&, std::uint8_t&, Freshness& f) { f.number ^= 0x80000000U; }), most);
-  EXPECT_LE(share_that_passes([](Command&, std::uint8_t&, Freshness& f) { f.epoch ^= 1U; }), most);
-}
-
-TEST(Seal, a_proof_of_a_number_is_no_seal_and_binds_node_number_and_nonce) {
-  const auto proof = [](std::uint8_t node, std::uint32_t number, Nonce nonce) {
-    return number_answer(kKey, node, ArmStep::Proof, number, nonce);
-  };
-  const std::uint16_t right = proof(2, 70000, {1, 2, 3});
-  EXPECT_NE(proof(3, 70000, {1, 2, 3}), right);
-  EXPECT_NE(proof(2, 70001, {1, 2, 3}), right);
-  EXPECT_NE(proof(2, 70000, {1, 2, 4}), right);
-  EXPECT_EQ(number_answer(kKey, 2, ArmStep::LowHalf, 70000, {}), 70000 & 0xFFFF);
-  EXPECT_EQ(number_answer(kKey, 2, ArmStep::HighHalf, 70000, {}), 1);
 }
 
 }  // namespace

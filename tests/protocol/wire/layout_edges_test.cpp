@@ -74,6 +74,17 @@ TEST(LayoutLimits, a_count_over_the_room_gives_the_room) {
   EXPECT_EQ(layout.used_peers().size(), 1U);
 }
 
+TEST(LayoutLimits, what_was_there_before_is_no_part_of_a_record_that_is_read) {
+  const EncodedLayout one_pin = encode(pallet(1));
+  const auto wanted = decode_layout(one_pin.span());
+  ASSERT_TRUE(wanted.has_value());
+  Layout before = with_pins(8, 8);
+  before.peer_count = 1;
+  before.peers[0] = {2, 3, 4, 5};
+  ASSERT_EQ(decode_layout(one_pin.span(), before), TransferStatus::Ok);
+  EXPECT_EQ(before, *wanted);
+}
+
 TEST(LayoutLimits, a_gripper_has_pins_on_both_jaws_and_a_pallet_on_one) {
   EXPECT_EQ(verdict(with_pins(2, 0)), TransferStatus::JawWithoutPins);
   EXPECT_EQ(verdict(with_pins(0, 2)), TransferStatus::JawWithoutPins);
@@ -332,6 +343,7 @@ TEST(Forces, of_the_record_are_cut_to_what_it_can_say) {
   EXPECT_EQ(requirement_dn(100'001), 2);
   EXPECT_EQ(requirement_dn(65535LL * 100'000), 65535);
   EXPECT_EQ(requirement_dn(65535LL * 100'000 + 1), 65535);
+  EXPECT_EQ(requirement_dn(-1'000'000), 0);
   EXPECT_EQ(limit_dn(-1), 0);
   EXPECT_EQ(limit_dn(-100'000), 0);
   EXPECT_EQ(limit_dn(99'999), 0);

@@ -60,6 +60,24 @@ TEST(CounterCheck, is_in_order_again_with_the_third_frame_after_one_stray) {
   }
 }
 
+TEST(CounterCheck, takes_a_second_stray_for_a_new_row_only_where_it_goes_on_from_the_first) {
+  for (std::uint8_t second = 0; second < kCounterModulus; ++second) {
+    if (second >= 7 && second <= 9) continue;  // it would be next after 6
+    CounterCheck check = after({4, 5, 6});
+    ASSERT_EQ(check.accept(11), CounterVerdict::Discarded);
+    EXPECT_EQ(check.accept(second), second >= 12 ? CounterVerdict::Qualifying : CounterVerdict::Discarded)
+        << int{second};
+  }
+}
+
+TEST(CounterCheck, forgets_a_stray_once_the_row_goes_on) {
+  for (const int stray : {0, 1, 2, 3, 4, 5, 6, 10, 11, 12, 13, 14}) {
+    EXPECT_EQ(after({4, 5, 6, stray, 7, 8, 9}), after({4, 5, 6, 7, 8, 9})) << stray;
+  }
+  CounterCheck check = after({4, 5, 6, 13, 7, 8, 9});
+  EXPECT_EQ(check.accept(0), CounterVerdict::Discarded) << "13 is no longer where a row may begin";
+}
+
 TEST(Reception, never_heard_is_not_fresh) {
   EXPECT_FALSE(Reception{}.fresh());
 }
@@ -72,6 +90,16 @@ TEST(Reception, is_fresh_for_its_time_and_no_longer) {
   EXPECT_TRUE(reception.fresh());
   reception.advance(1);
   EXPECT_FALSE(reception.fresh());
+}
+
+TEST(Reception, is_fresh_from_the_frame_that_may_be_used_not_from_those_before) {
+  Reception reception;
+  for (std::uint8_t counter = 0; counter < 3; ++counter) {
+    reception.advance(60);
+    reception.accept(counter, kPeerFresh_ms);
+  }
+  reception.advance(kPeerFresh_ms - 1);
+  EXPECT_TRUE(reception.fresh());
 }
 
 TEST(Reception, a_repeated_frame_keeps_nothing_alive) {

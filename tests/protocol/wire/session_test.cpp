@@ -87,6 +87,13 @@ TEST(CommandGate, when_closed_still_answers_the_last_command_alike_unless_it_ope
   EXPECT_EQ(gate.session(), 0);
 }
 
+TEST(CommandGate, may_be_closed_before_anything_was_commanded) {
+  CommandGate gate;
+  gate.open(7);
+  gate.close();
+  EXPECT_EQ(gate, CommandGate{});
+}
+
 TEST(CommandGate, differs_from_another_in_whatever_it_keeps) {
   CommandGate one;
   one.open(7);

@@ -114,6 +114,17 @@ Frame with_burst(Frame frame, unsigned first, unsigned pattern) {
   return frame;
 }
 
+TEST(Checksum, of_a_frame_is_over_its_data_id_and_the_seven_bytes_behind_it) {
+  for (std::uint8_t node = 1; node <= 14; ++node) {
+    const Frame frame = pack(Force{.f_high_dn = 771}, {.node = node, .counter = 3});
+    Crc8 crc;
+    crc.add(static_cast<std::uint8_t>(5 * 16 + node));  // FORCE is the catalogue's fifth
+    crc.add(0x5A);
+    for (std::size_t i = 1; i < 8; ++i) crc.add(frame.data.at(i));
+    EXPECT_EQ(frame.data[0], crc.value()) << int{node};
+  }
+}
+
 TEST(Checksum, of_a_frame_misses_no_burst_of_eight_bits_in_what_it_covers) {
   const Frame frame = pack(Force{.f_high_dn = 771}, {.node = 2, .counter = 3});
   for (unsigned first = 8; first <= 56; ++first) {

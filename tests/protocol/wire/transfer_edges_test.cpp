@@ -258,6 +258,7 @@ TEST(TransferReceiver, refuses_257_bytes_and_takes_256_and_8) {
   EXPECT_EQ(receiver.accept(first_of(257)), kRefusal);
   EXPECT_EQ(receiver.ignored(), 1U);
   EXPECT_TRUE(receiver.accept(first_of(256)).has_value());
+  EXPECT_EQ(receiver.last_end(), TransferEnd::None) << "the first one replaces nothing";
   EXPECT_TRUE(receiver.accept(first_of(8)).has_value());
   EXPECT_EQ(receiver.last_end(), TransferEnd::Replaced);
   receiver.accept(next_of(1));
