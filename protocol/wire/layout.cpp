@@ -1,6 +1,6 @@
 #include "protocol/wire/layout.hpp"
 
-#include <string_view>
+#include <algorithm>
 #include <utility>
 
 #include "protocol/wire/bits.hpp"
@@ -190,12 +190,13 @@ TransferStatus check_content(const Layout& layout) {
 
 /// The first `count` digits' number; 0 where there are fewer.
 std::uint32_t first_digits(std::span<const char> hex, std::size_t count) {
-  constexpr std::string_view kDigits = "0123456789abcdefABCDEF";
+  constexpr char kDigits[] = "0123456789abcdefABCDEF";
+  constexpr std::size_t kCount = sizeof kDigits - 1;
   if (hex.size() < count) return 0;
   std::uint32_t value = 0;
   for (const char c : hex.first(count)) {
-    const std::size_t place = kDigits.find(c);
-    if (place == std::string_view::npos) return 0;
+    const auto place = static_cast<std::size_t>(std::find(kDigits, kDigits + kCount, c) - kDigits);
+    if (place == kCount) return 0;
     value = value << 4 | static_cast<std::uint32_t>(place < 16 ? place : place - 6);
   }
   return value;
