@@ -86,6 +86,10 @@ TEST(Soak, handoffs_for_a_month_drop_nothing_raise_no_fault_and_take_no_memory) 
     ASSERT_EQ(truth.holders, std::vector{receiver}) << "handoff " << done;
     ASSERT_EQ(worst_fault(cell), wire::FaultCode::None) << "handoff " << done;
     if (done == handoffs / 4) before_bytes = resident_bytes();
+    if (done % 10000 == 9999) {  // hours at night
+      std::printf("%d of %d handoffs\n", done + 1, handoffs);
+      std::fflush(stdout);
+    }
   }
   const long grown_bytes = resident_bytes() - before_bytes;
   const core::State& firmware = cell.world().find(1)->firmware();
