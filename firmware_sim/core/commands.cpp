@@ -123,9 +123,8 @@ namespace {
     }
   }
   wire::Acknowledge acknowledge = acknowledgement(state, command, answer);
-  const bool opens = command.op == wire::Op::Arm && answer.result == CommandResult::Ok;
   if (admission != Admission::New || command.op == wire::Op::Hold) return acknowledge;
-  if (command.op == wire::Op::Arm && !opens) return acknowledge;
+  if (command.op == wire::Op::Arm && answer.result != CommandResult::Ok) return acknowledge;
   acknowledge.next_sequence =
       command.sequence == 255 ? command.sequence : static_cast<std::uint8_t>(command.sequence + 1);
   state.gate.remember(said, acknowledge);

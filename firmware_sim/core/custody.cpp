@@ -32,8 +32,7 @@ void flush(Store& store, const wire::Layout& committed, std::optional<NvmWrite>&
 void announce(State& state) {
   const NvmRecord& record = state.store.record;
   if (!state.store.readable) return;  // whatever the record was, it is not known
-  const bool early = record.custody == Custody::Latched && !keeps(Rule::LatchBeforeTake);
-  if (!state.store.durable() && !early) return;
+  if ((record.custody != Custody::Latched || keeps(Rule::LatchBeforeTake)) && !state.store.durable()) return;
   const auto say = [&](wire::Fact fact) {
     state.announced = {.fact = fact, .peer = record.peer, .token = record.token, .pair = record.pair};
   };
@@ -49,14 +48,14 @@ void announce(State& state) {
     case Custody::Latched:
       if (state.hold_proven || !keeps(Rule::TakeOnStableHold)) say(wire::Fact::Take);
       return;
-    case Custody::Decided:
-      return;
     case Custody::Released:
       return say(wire::Fact::Released);
     case Custody::Retained:
       if (state.announced.fact != wire::Fact::Retain && !holds_enough(state) && keeps(Rule::RetainOnGoodHold))
         return;
       return say(wire::Fact::Retain);
+    default:  // Decided: nothing new is true until the jaws are open
+      return;
   }
 }
 

@@ -27,8 +27,8 @@ bool presses(const State& state) {
 
 /// A fault that is a condition: set and cleared as it comes and goes.
 void follow(State& state, wire::FaultCode code, bool there) {
-  if (there && !state.faults.active(code)) raise(state, code);
-  if (!there) state.faults.clear(code);
+  if (there) return raise(state, code);
+  state.faults.clear(code);
 }
 
 /// An event that only sets a fault is raised once.
@@ -221,11 +221,10 @@ void track_air(State& state, std::uint16_t elapsed_ms) {
   if (asks && control.refilling) asked_ms += kRefill_ms;
   control.asked_ms =
       static_cast<std::uint16_t>(std::clamp<std::int32_t>(asked_ms, 0, kLeaks_ms + kRefill_ms));
-  const bool starves = answers && state.bad_hold_ms >= kBadHold_ms && control.flow == Flow::Filling &&
-                       !state.measurement.supply_low;
+  const bool starves =
+      state.bad_hold_ms >= kBadHold_ms && control.flow == Flow::Filling && !state.measurement.supply_low;
   control.starved_ms = counted(control.starved_ms, starves, elapsed_ms);
-  if (control.asked_ms >= kLeaks_ms && is_news(state, wire::FaultCode::Leak))
-    raise(state, wire::FaultCode::Leak);
+  if (control.asked_ms >= kLeaks_ms) raise(state, wire::FaultCode::Leak);
   if (control.asked_ms == 0) state.faults.clear(wire::FaultCode::Leak);
   if (control.starved_ms >= kStarved_ms && is_news(state, wire::FaultCode::ValveStuck)) {
     raise(state, wire::FaultCode::ValveStuck);
@@ -240,8 +239,7 @@ void track_block(State& state, std::uint16_t elapsed_ms) {
   if (told && state.measurement.still_ms > 0) {
     blocked_ms = counted(blocked_ms, true, elapsed_ms);
   } else {
-    blocked_ms =
-        blocked_ms > elapsed_ms ? static_cast<std::uint16_t>(blocked_ms - elapsed_ms) : std::uint16_t{0};
+    blocked_ms = static_cast<std::uint16_t>(blocked_ms - std::min(blocked_ms, elapsed_ms));
   }
 }
 
@@ -270,8 +268,7 @@ void track(State& state, std::uint16_t elapsed_ms) {
   if (state.bus.recovered()) state.faults.note(wire::FaultCode::BusOffRecovered);
   if (state.bus.overran()) state.faults.note(wire::FaultCode::ReceiveOverrun);
   if (!giver_stale(state)) state.faults.clear(wire::FaultCode::PeerLost);
-  const bool another_host = state.host.alive() && state.host.epoch() != state.session_epoch;
-  if (!state.host.alive() || another_host) end_session(state);
+  if (!state.host.alive() || state.host.epoch() != state.session_epoch) end_session(state);
 }
 
 std::optional<Event> next_event(const State& state) {

@@ -35,18 +35,17 @@ void integrate(const State& state, std::int32_t error_dn, std::int32_t elapsed_m
 
 /// The band in which the check valve stays shut: refilled under its middle, filled up to its top.
 struct Band {
-  std::int32_t top_dn = 0;
-  std::int32_t refill_dn = 0;
-  std::int32_t relieve_dn = 0;
+  std::int32_t top_dn;
+  std::int32_t refill_dn;
+  std::int32_t relieve_dn;
 };
 
 Band band_about(const State& state, std::int32_t set_dn) {
   const std::int32_t most_dn = force_limit_dn(state) - state.config.uncertainty_dn;
-  Band band;
-  band.top_dn = std::max(set_dn, std::min(set_dn + state.config.hold_band_dn, most_dn));
-  band.refill_dn = set_dn + (band.top_dn - set_dn) / 2;
-  band.relieve_dn = std::max(band.top_dn, std::min(band.top_dn + 2 * state.config.hold_band_dn, most_dn));
-  return band;
+  const std::int32_t top_dn = std::max(set_dn, std::min(set_dn + state.config.hold_band_dn, most_dn));
+  return {.top_dn = top_dn,
+          .refill_dn = set_dn + (top_dn - set_dn) / 2,
+          .relieve_dn = std::max(top_dn, std::min(top_dn + 2 * state.config.hold_band_dn, most_dn))};
 }
 
 void switch_flow(const Band& band, std::int32_t measured_dn, bool ramping_up, ForceControl& control) {
@@ -58,7 +57,7 @@ void switch_flow(const Band& band, std::int32_t measured_dn, bool ramping_up, Fo
     case Flow::Filling:
       if (measured_dn >= band.top_dn && !ramping_up) control.flow = Flow::Shut;
       break;
-    case Flow::Relieving:
+    default:  // relieving
       if (measured_dn <= band.top_dn) control.flow = Flow::Shut;
       break;
   }
@@ -74,7 +73,7 @@ Valves regulate(State& state, std::int32_t set_dn, std::int32_t elapsed_ms) {
   if (arrived && control.flow == Flow::Filling)
     integrate(state, band.top_dn - measured_dn, elapsed_ms, control);
   const bool shut = control.flow == Flow::Shut;
-  switch_flow(band, measured_dn, !arrived && control.reference_dn < band.top_dn, control);
+  switch_flow(band, measured_dn, control.reference_dn < band.top_dn, control);
   control.refilling = shut && arrived && control.flow == Flow::Filling;
 
   Valves valves;
@@ -143,10 +142,10 @@ std::int32_t force_set_dn(const State& state) {
       set_dn = std::max(light_dn, state.force_set_dn * kRelaxPercent / 100);
       break;
     default:
-      return 0;
+      break;
   }
   const std::int32_t most_dn = force_limit_dn(state) - state.config.uncertainty_dn;
-  return std::clamp<std::int32_t>(set_dn, 0, std::max<std::int32_t>(most_dn, 0));
+  return std::min(set_dn, std::max<std::int32_t>(most_dn, 0));
 }
 
 Valves wanted_valves(State& state, std::uint32_t elapsed_ms) {

@@ -116,7 +116,7 @@ bool no_part_proven(const State& state) {
   const wire::Layout& layout = state.layouts.layout;
   const bool past_part =
       m.separation_10um < layout.separation_contact_10um - layout.separation_tolerance_10um;
-  return open || closed || past_part || fully_open(state);
+  return past_part || (closed && !separation_in_window(state)) || fully_open(state);
 }
 
 bool clear_of_part(const State& state) {

@@ -47,8 +47,8 @@ bool giver_offers(const State& state);
 /// That giver says that it has taken the token back; true for ever, so freshness does not matter.
 bool giver_retains(const State& state);
 
-/// Sensors prove that nothing is between the jaws: fully open, fully closed or closed past the part, with no
-/// squeeze; for a passive station every seat switch off.
+/// Sensors prove that nothing is between the jaws: fully open, fully closed or closed past the part, nowhere
+/// where a part may be, with no squeeze; for a passive station every seat switch off.
 bool no_part_proven(const State& state);
 
 /// The jaws are so far from the part that it is free.

@@ -6,7 +6,7 @@ namespace pinjaw::core {
 
 HostLink::Host& HostLink::slot_for(std::uint16_t epoch) {
   for (Host& host : hosts_) {
-    if (host.heard.running() && host.epoch == epoch) return host;
+    if (host.epoch == epoch) return host;  // a place where nobody is heard is nobody's: of epoch 0
   }
   Host& spare = hosts_[0].heard.running() ? hosts_[1] : hosts_[0];
   spare = Host{};
@@ -28,7 +28,7 @@ void HostLink::advance(std::uint16_t elapsed_ms) {
     host.heard.advance(elapsed_ms);
     if (!host.heard.running()) host = Host{};
   }
-  if (!hosts_[0].heard.running() && hosts_[1].heard.running()) std::swap(hosts_[0], hosts_[1]);
+  if (!hosts_[0].heard.running()) std::swap(hosts_[0], hosts_[1]);
 }
 
 }  // namespace pinjaw::core

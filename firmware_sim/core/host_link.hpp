@@ -25,8 +25,8 @@ class HostLink {
   [[nodiscard]] bool permits() const { return alive() && hosts_[0].permit; }
   /// Its epoch; meaningful while alive().
   [[nodiscard]] std::uint16_t epoch() const { return hosts_[0].epoch; }
-  /// Two epochs were heard within 200 ms.
-  [[nodiscard]] bool two_hosts() const { return hosts_[0].heard.running() && hosts_[1].heard.running(); }
+  /// Two epochs were heard within 200 ms: the other one never alone, for it is followed then.
+  [[nodiscard]] bool two_hosts() const { return hosts_[1].heard.running(); }
 
  private:
   struct Host {

@@ -31,9 +31,9 @@ void take_up_layout(State& state) {
 /// An answer under construction, in the room of the sender.
 class ServiceAnswer {
  public:
-  ServiceAnswer(State& state, std::uint8_t service, std::uint8_t transaction, TransferStatus status)
+  ServiceAnswer(State& state, wire::Service service, std::uint8_t transaction, TransferStatus status)
       : sender_(state.service.sender), out_(sender_.compose()) {
-    out_.put(service | wire::kResponseBit, 1);
+    out_.put(static_cast<unsigned>(service) | wire::kResponseBit, 1);
     out_.put(transaction, 1);
     out_.put(static_cast<std::uint8_t>(status), 1);
   }
@@ -45,13 +45,12 @@ class ServiceAnswer {
   wire::ByteWriter out_;
 };
 
-void answer_status(State& state, std::uint8_t service, std::uint8_t transaction, TransferStatus status) {
+void answer_status(State& state, wire::Service service, std::uint8_t transaction, TransferStatus status) {
   ServiceAnswer(state, service, transaction, status).start();
 }
 
 void answer_commit(State& state, std::uint8_t transaction) {
-  ServiceAnswer answer(state, static_cast<std::uint8_t>(wire::Service::Commit), transaction,
-                       TransferStatus::Ok);
+  ServiceAnswer answer(state, wire::Service::Commit, transaction, TransferStatus::Ok);
   answer.body().put(state.layouts.crc, 4);
   answer.start();
 }
@@ -84,7 +83,7 @@ TransferStatus commit(State& state, std::uint32_t crc) {
 
 void serve_write(State& state, std::uint8_t transaction, std::span<const std::uint8_t> body) {
   const TransferStatus status = write(state, body);
-  ServiceAnswer answer(state, static_cast<std::uint8_t>(wire::Service::Write), transaction, status);
+  ServiceAnswer answer(state, wire::Service::Write, transaction, status);
   if (status == TransferStatus::Ok) answer.body().put(wire::layout_crc_of(state.layouts.staged), 4);
   answer.start();
 }
@@ -95,25 +94,23 @@ void serve_commit(State& state, std::uint8_t transaction, std::span<const std::u
   const bool well_formed = !in.truncated() && in.left() == 0;
   const TransferStatus status = well_formed ? commit(state, crc) : TransferStatus::Length;
   if (status != TransferStatus::Ok) {
-    return answer_status(state, static_cast<std::uint8_t>(wire::Service::Commit), transaction, status);
+    return answer_status(state, wire::Service::Commit, transaction, status);
   }
   state.service.commit_waits = true;
   state.service.commit_transaction = transaction;
 }
 
 void serve_readback(State& state, std::uint8_t transaction) {
-  const auto service = static_cast<std::uint8_t>(wire::Service::Readback);
   if (!state.layouts.committed)
-    return answer_status(state, service, transaction, TransferStatus::NothingStaged);
-  ServiceAnswer answer(state, service, transaction, TransferStatus::Ok);
+    return answer_status(state, wire::Service::Readback, transaction, TransferStatus::NothingStaged);
+  ServiceAnswer answer(state, wire::Service::Readback, transaction, TransferStatus::Ok);
   wire::encode(state.layouts.layout, answer.body());
   answer.start();
 }
 
 void serve_identify(State& state, std::uint8_t transaction) {
   const wire::LayoutTarget target = target_of(state.config);
-  ServiceAnswer answer(state, static_cast<std::uint8_t>(wire::Service::Identify), transaction,
-                       TransferStatus::Ok);
+  ServiceAnswer answer(state, wire::Service::Identify, transaction, TransferStatus::Ok);
   wire::Identification{.node = target.node,
                        .node_class = target.node_class,
                        .kit_id = target.kit_id,
@@ -125,10 +122,11 @@ void serve_identify(State& state, std::uint8_t transaction) {
   answer.start();
   state.identity_burst = true;
   state.identity_page = 0;
+  state.timers.identity.stop();
 }
 
 void serve_log(State& state, std::uint8_t transaction) {
-  ServiceAnswer answer(state, static_cast<std::uint8_t>(wire::Service::Log), transaction, TransferStatus::Ok);
+  ServiceAnswer answer(state, wire::Service::Log, transaction, TransferStatus::Ok);
   answer.body().put(state.counters.bad_frames, 4);
   answer.body().put(state.counters.events_ignored, 4);
   answer.body().put(state.counters.events_refused, 4);
@@ -141,19 +139,20 @@ void serve(State& state, std::span<const std::uint8_t> request) {
   if (request.size() < wire::kRequestHeader) return;
   const std::uint8_t transaction = request[1];
   const std::span<const std::uint8_t> body = request.subspan(wire::kRequestHeader);
-  switch (request[0]) {
-    case static_cast<unsigned>(wire::Service::Write):
+  const auto service = static_cast<wire::Service>(request[0]);
+  switch (service) {
+    case wire::Service::Write:
       return serve_write(state, transaction, body);
-    case static_cast<unsigned>(wire::Service::Commit):
+    case wire::Service::Commit:
       return serve_commit(state, transaction, body);
-    case static_cast<unsigned>(wire::Service::Readback):
+    case wire::Service::Readback:
       return serve_readback(state, transaction);
-    case static_cast<unsigned>(wire::Service::Identify):
+    case wire::Service::Identify:
       return serve_identify(state, transaction);
-    case static_cast<unsigned>(wire::Service::Log):
+    case wire::Service::Log:
       return serve_log(state, transaction);
     default:
-      return answer_status(state, request[0], transaction, TransferStatus::UnknownService);
+      return answer_status(state, service, transaction, TransferStatus::UnknownService);
   }
 }
 
@@ -177,8 +176,7 @@ void advance_service(State& state, std::uint16_t elapsed_ms, SendQueue& queue) {
   if (service.commit_waits && (state.store.failed || state.store.durable())) {
     service.commit_waits = false;
     if (state.store.failed) {
-      answer_status(state, static_cast<std::uint8_t>(wire::Service::Commit), service.commit_transaction,
-                    TransferStatus::Memory);
+      answer_status(state, wire::Service::Commit, service.commit_transaction, TransferStatus::Memory);
     } else {
       answer_commit(state, service.commit_transaction);
     }
@@ -186,14 +184,12 @@ void advance_service(State& state, std::uint16_t elapsed_ms, SendQueue& queue) {
   if (const auto segment = service.sender.advance(elapsed_ms)) send_segment(state, queue, *segment);
 }
 
-bool restore_layout(State& state, const LayoutBlob& blob) {
-  if (blob.size == 0 || blob.size > blob.bytes.size()) return false;
+void restore_layout(State& state, const LayoutBlob& blob) {
+  if (blob.size > blob.bytes.size()) return;
   const std::span<const std::uint8_t> record = std::span(blob.bytes).first(blob.size);
   wire::Layout& layout = state.layouts.staged;
-  if (wire::decode_layout(record, layout) != TransferStatus::Ok) return false;
-  if (wire::admissible(layout, target_of(state.config)) != TransferStatus::Ok) return false;
-  take_up_layout(state);
-  return true;
+  if (wire::decode_layout(record, layout) != TransferStatus::Ok) return;
+  if (wire::admissible(layout, target_of(state.config)) == TransferStatus::Ok) take_up_layout(state);
 }
 
 }  // namespace pinjaw::core

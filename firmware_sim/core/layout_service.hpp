@@ -12,7 +12,7 @@ void take_segment(State& state, const wire::Segment& segment, SendQueue& queue);
 /// Lets time pass: sends what is due of an answer, and the answer to COMMIT once the layout is stored.
 void advance_service(State& state, std::uint16_t elapsed_ms, SendQueue& queue);
 
-/// Takes up a stored layout at power on; false where it is none that this controller may use.
-bool restore_layout(State& state, const LayoutBlob& blob);
+/// Takes up a stored layout at power on, unless it is none that this controller may use.
+void restore_layout(State& state, const LayoutBlob& blob);
 
 }  // namespace pinjaw::core

@@ -16,9 +16,9 @@ constexpr std::int32_t kOverTravel_10um = 200;
 
 constexpr std::int32_t kSpeed_ms = 16;  // chosen: the sensor's step of 10 um is 0.6 mm/s
 
-std::int32_t filtered(std::int32_t old_ubar, std::int32_t reading_mbar, std::int32_t elapsed_ms) {
-  const std::int32_t step = std::min(elapsed_ms, kFilter_ms);
-  return old_ubar + (reading_mbar * 1000 - old_ubar) / kFilter_ms * step;
+/// `step_ms`: kFilter_ms at most.
+std::int32_t filtered(std::int32_t old_ubar, std::int32_t reading_mbar, std::int32_t step_ms) {
+  return old_ubar + (reading_mbar * 1000 - old_ubar) / kFilter_ms * step_ms;
 }
 
 SensorTrouble trouble_of(const Config& config, const Sensors& sensors) {
@@ -42,8 +42,7 @@ SensorTrouble trouble_of(const Config& config, const Sensors& sensors) {
   return SensorTrouble::None;
 }
 
-void observe_pressures(const Config& config, const Sensors& sensors, std::int32_t elapsed_ms,
-                       Measurement& m) {
+void observe_pressures(const Config& config, const Sensors& sensors, std::int32_t step_ms, Measurement& m) {
   const auto in_range = [](std::int32_t mbar) { return std::clamp<std::int32_t>(mbar, -1000, 20000); };
   const std::int32_t open_mbar = (in_range(sensors.open_mbar[0]) + in_range(sensors.open_mbar[1])) / 2;
   if (!m.started) {
@@ -51,9 +50,9 @@ void observe_pressures(const Config& config, const Sensors& sensors, std::int32_
     m.open_ubar = open_mbar * 1000;
   }
   for (std::size_t i = 0; i < 2; ++i) {
-    m.close_ubar[i] = filtered(m.close_ubar[i], in_range(sensors.close_mbar[i]), elapsed_ms);
+    m.close_ubar[i] = filtered(m.close_ubar[i], in_range(sensors.close_mbar[i]), step_ms);
   }
-  m.open_ubar = filtered(m.open_ubar, open_mbar, elapsed_ms);
+  m.open_ubar = filtered(m.open_ubar, open_mbar, step_ms);
   m.squeeze.measured_dn = squeeze_dn(config, (m.close_ubar[0] + m.close_ubar[1]) / 2, m.open_ubar);
   m.squeeze.low_dn = m.squeeze.measured_dn - config.uncertainty_dn;
   m.squeeze.high_dn = m.squeeze.measured_dn + config.uncertainty_dn;
@@ -75,7 +74,8 @@ std::uint16_t counted(std::uint16_t ms, bool going_on, std::uint32_t elapsed_ms)
 }
 
 void observe(const Config& config, const Sensors& sensors, std::uint32_t elapsed_ms, Measurement& m) {
-  observe_pressures(config, sensors, static_cast<std::int32_t>(std::min<std::uint32_t>(elapsed_ms, 1000)), m);
+  observe_pressures(config, sensors,
+                    static_cast<std::int32_t>(std::min<std::uint32_t>(elapsed_ms, kFilter_ms)), m);
 
   const std::int32_t moved_10um = sensors.separation_10um - m.still_at_10um;
   const bool still = m.started && moved_10um <= kStill_10um && moved_10um >= -kStill_10um;

@@ -12,7 +12,7 @@ void Peers::follow(const wire::Layout& layout) {
 
 Peer* Peers::slot_of(std::uint8_t node) {
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
-    if (nodes_[i] == node && node != 0) return &peers_[i];
+    if (nodes_[i] == node) return &peers_[i];
   }
   return nullptr;
 }

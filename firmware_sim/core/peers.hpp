@@ -41,7 +41,7 @@ class Peers {
   [[nodiscard]] const Peer* find(std::uint8_t node) const;
 
  private:
-  Peer* slot_of(std::uint8_t node);
+  Peer* slot_of(std::uint8_t node);  ///< of node 0, which is nobody, one that find() never gives
 
   std::array<std::uint8_t, wire::kMaxPeers> nodes_{};  ///< 0: unused
   std::array<Peer, wire::kMaxPeers> peers_{};

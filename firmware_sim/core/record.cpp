@@ -81,8 +81,9 @@ std::optional<std::uint32_t> sequence_of(std::span<const std::uint8_t> slot, std
   return sequence;
 }
 
+/// From the value on; the checksum is behind it.
 std::span<const std::uint8_t> content_of(std::span<const std::uint8_t> slot) {
-  return slot.subspan(8, slot.size() - kSlotOverhead);
+  return slot.subspan(8);
 }
 
 bool later(std::uint32_t one, std::uint32_t other) {
@@ -120,11 +121,18 @@ bool is_blank(std::span<const std::uint8_t> slot) {
   return std::all_of(slot.begin(), slot.end(), [](std::uint8_t byte) { return byte == kBlank; });
 }
 
-/// Byte `index` of a store of `slot` into both of `slots`.
+/// The store of `value` into `slots`.
+template <class Slot, class Value, class Decode>
+SlotStore<Slot> store_of(const std::array<Slot, 2>& slots, const Value& value, Decode decode) {
+  const Pair present = look_at(slots, decode);
+  return {encode(Stored<Value>{present.next_sequence(), value}), present.first_to_write()};
+}
+
+/// Byte `index` of a store into both of `slots`.
 template <class Slot>
-void put_byte(std::array<Slot, 2>& slots, const Slot& slot, std::size_t first, std::size_t index) {
-  Slot& target = slots[index < slot.size() ? first : 1 - first];
-  target[index % slot.size()] = slot[index % slot.size()];
+void put_byte(std::array<Slot, 2>& slots, const SlotStore<Slot>& store, std::size_t index) {
+  Slot& target = slots[index < store.bytes.size() ? store.first : 1 - store.first];
+  target[index % target.size()] = store.bytes[index % target.size()];
 }
 
 }  // namespace
@@ -191,28 +199,19 @@ NvmImage image_of(const Memory& memory) {
   return image;
 }
 
-MemoryUpdate::MemoryUpdate(const Memory& memory, const NvmWrite& request)
-    : has_record_(request.record.has_value()), has_layout_(request.layout.has_value()) {
-  if (request.record) {
-    const Pair present = look_at(memory.records, decode_record);
-    record_ = encode(Stored<NvmRecord>{present.next_sequence(), *request.record});
-    first_record_ = present.first_to_write();
-  }
-  if (request.layout) {
-    const Pair present = look_at(memory.layouts, decode_layout_slot);
-    layout_ = encode(Stored<LayoutBlob>{present.next_sequence(), *request.layout});
-    first_layout_ = present.first_to_write();
-  }
+MemoryUpdate::MemoryUpdate(const Memory& memory, const NvmWrite& request) {
+  if (request.record) record_ = store_of(memory.records, *request.record, decode_record);
+  if (request.layout) layout_ = store_of(memory.layouts, *request.layout, decode_layout_slot);
 }
 
 std::size_t MemoryUpdate::size() const {
-  return (has_record_ ? 2 * record_.size() : 0) + (has_layout_ ? 2 * layout_.size() : 0);
+  return (record_ ? 2 * record_->bytes.size() : 0) + (layout_ ? 2 * layout_->bytes.size() : 0);
 }
 
 void MemoryUpdate::put(std::size_t index, Memory& memory) const {
-  const std::size_t of_record = has_record_ ? 2 * record_.size() : 0;
-  if (index < of_record) return put_byte(memory.records, record_, first_record_, index);
-  if (index < size()) put_byte(memory.layouts, layout_, first_layout_, index - of_record);
+  const std::size_t of_record = record_ ? 2 * record_->bytes.size() : 0;
+  if (index < of_record) return put_byte(memory.records, *record_, index);
+  if (index < size()) put_byte(memory.layouts, *layout_, index - of_record);
 }
 
 }  // namespace pinjaw::core

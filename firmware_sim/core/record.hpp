@@ -51,6 +51,13 @@ std::optional<Stored<LayoutBlob>> decode_layout_slot(std::span<const std::uint8_
 /// first store of all was cut short, so nothing was ever recorded.
 NvmImage image_of(const Memory& memory);
 
+/// What is written into both slots of a value, and into which of them first.
+template <class Slot>
+struct SlotStore {
+  Slot bytes;
+  std::size_t first;
+};
+
 /// A request on its way into memory, byte by byte.
 class MemoryUpdate {
  public:
@@ -62,12 +69,8 @@ class MemoryUpdate {
   void put(std::size_t index, Memory& memory) const;
 
  private:
-  bool has_record_ = false;
-  bool has_layout_ = false;
-  RecordSlot record_{};
-  LayoutSlot layout_{};
-  std::size_t first_record_ = 0;
-  std::size_t first_layout_ = 0;
+  std::optional<SlotStore<RecordSlot>> record_;
+  std::optional<SlotStore<LayoutSlot>> layout_;
 };
 
 }  // namespace pinjaw::core

@@ -112,6 +112,18 @@ void follow(ReleaseGuard& guard, const Release& release) {
   guard.good_ms = 0;
 }
 
+/// What was heard until now and has lasted for another `elapsed_ms`.
+void judge(ReleaseGuard& guard, const Release& release, std::uint16_t elapsed_ms) {
+  const bool good = guard.custody.good && guard.state.good && guard.custody.fresh.running() &&
+                    guard.state.fresh.running() && !guard.peer_faulty.running();
+  guard.good_ms =
+      good ? static_cast<std::uint16_t>(std::min(guard.good_ms + elapsed_ms, 60000)) : std::uint16_t{0};
+  if (guard.good_ms >= kGood_ms) guard.peer_permits = true;
+  if (release.decided) return;
+  guard.decided_before = false;
+  if (!guard.asked.running()) guard.hand_permits = false;
+}
+
 }  // namespace
 
 ReleaseGuard guard_after_reset(const NvmRecord& record) {
@@ -128,14 +140,14 @@ void watch(ReleaseGuard& guard, const Config& config, const Release& release,
     timer->advance(elapsed_ms);
   }
   for (const wire::Frame& frame : received) hear(guard, config, release, frame, local_enable);
-  const bool good = guard.custody.good && guard.state.good && guard.custody.fresh.running() &&
-                    guard.state.fresh.running() && !guard.peer_faulty.running();
-  guard.good_ms =
-      good ? static_cast<std::uint16_t>(std::min(guard.good_ms + elapsed_ms, 60000)) : std::uint16_t{0};
-  if (guard.good_ms >= kGood_ms) guard.peer_permits = true;
-  if (release.decided) return;
-  guard.decided_before = false;
-  if (!guard.asked.running()) guard.hand_permits = false;
+  judge(guard, release, elapsed_ms);
+}
+
+void watch(ReleaseGuard& guard, const Config& config, const Release& release, const wire::Frame& frame,
+           bool local_enable) {
+  follow(guard, release);
+  hear(guard, config, release, frame, local_enable);
+  judge(guard, release, 0);
 }
 
 bool sees_peer_hold(const ReleaseGuard& guard, const Config& config) {

@@ -51,6 +51,10 @@ ReleaseGuard guard_after_reset(const NvmRecord& record);
 void watch(ReleaseGuard& guard, const Config& config, const Release& release,
            std::span<const wire::Frame> received, bool local_enable, std::uint16_t elapsed_ms);
 
+/// Takes in a frame that comes alone, in a step whose time has passed.
+void watch(ReleaseGuard& guard, const Config& config, const Release& release, const wire::Frame& frame,
+           bool local_enable);
+
 /// The giver's force may go down to that of RELAX: its peer says now that it holds.
 bool sees_peer_hold(const ReleaseGuard& guard, const Config& config);
 

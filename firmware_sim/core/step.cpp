@@ -72,8 +72,7 @@ void listen(State& state, const Inputs& inputs, SendQueue& queue) {
     if (on_can_fd(state.config)) {
       const std::optional<wire::Frame> opened = state.link.open(*state.config.key, frame);
       if (!opened) continue;
-      watch(state.release_guard, state.config, release_of(state), std::span(&*opened, 1),
-            inputs.sensors.local_enable, 0);
+      watch(state.release_guard, state.config, release_of(state), *opened, inputs.sensors.local_enable);
       if (wire::dispatch(*opened, listener)) ++state.counters.bad_frames;
     } else if (wire::dispatch(frame, listener)) {
       ++state.counters.bad_frames;

@@ -252,7 +252,7 @@ void stay(State& state, Event event) {
       if (grips(state.id) || state.id == StateId::Opening) return;
       state.opening_wanted = false;
       state.frozen = true;
-      return end_session(state);
+      [[fallthrough]];
     case Event::CmdWrite:
     case Event::CmdDisarm:
       return end_session(state);
@@ -278,7 +278,7 @@ bool apply(State& state, Event event) {
   if (what.kind == ReactionKind::Refused) ++state.counters.events_refused;
   if (what.kind == ReactionKind::Ignored || what.kind == ReactionKind::Refused) return false;
   if (event == Event::CmdClearFault) state.faults.clear_all();
-  if (const wire::FaultCode code = fault_of(state, event); code != wire::FaultCode::None) raise(state, code);
+  raise(state, fault_of(state, event));
   if (what.kind == ReactionKind::Stay) {
     stay(state, event);
   } else {

@@ -11,7 +11,7 @@ inline constexpr std::uint16_t kPeerGood_ms = 60;  // three cycles of 20 ms
 /// counter changes.
 bool apply(State& state, Event event);
 
-/// Sets a fault. One for which the node must hold ends the session.
+/// Sets a fault; None is none. One for which the node must hold ends the session.
 void raise(State& state, wire::FaultCode code);
 
 /// Closes the session: whatever is dangerous needs a new ARM.

@@ -93,6 +93,8 @@ TEST(Beginning, of_measuring_is_that_nothing_was_read) {
   EXPECT_EQ(m.squeeze.measured_dn, 0);
   EXPECT_EQ(m.separation_10um, 0);
   EXPECT_EQ(m.still_at_10um, 0);
+  EXPECT_EQ(m.lagging_um, 0);
+  EXPECT_EQ(m.closing_mm_s, 0);
   EXPECT_EQ(m.still_ms, 0);
   EXPECT_EQ(m.troubled_ms, 0);
   EXPECT_EQ(m.suspected, SensorTrouble::None);
@@ -157,6 +159,7 @@ TEST(Beginning, of_a_state_is_boot_with_nothing_known) {
   EXPECT_EQ(state.control.reference_dn, 0);
   EXPECT_EQ(state.control.integral_ubar, 0);
   EXPECT_EQ(state.control.blocked_ms, 0);
+  EXPECT_EQ(state.control.push_mdn, 0);
   EXPECT_EQ(state.control.starved_ms, 0);
   EXPECT_FALSE(state.control.refilling);
   EXPECT_EQ(state.control.asked_ms, 0);

@@ -154,6 +154,31 @@ TEST(TakenUp, by_squeeze_and_offer_are_forces_and_receiver) {
   EXPECT_EQ(giver.store.record.peer, kPallet);
 }
 
+TEST(TakenUp, is_nothing_that_another_command_brings) {
+  State accepts = in_session(Ready);
+  accepts.measurement.separation_10um = 5000;
+  accepts.force_set_dn = 530;
+  const std::uint16_t pair = accepts.layouts.layout.peer(kPedestal)->pair_crc;
+  hear_peer(accepts, kPedestal,
+            {.fact = wire::Fact::Offer, .peer = kArm, .token = 7, .pair = pair, .f_low_n = 40});
+  EXPECT_EQ(obey(accepts, numbered(wire::accept_command(kPedestal), 1)).result, CommandResult::Ok);
+  EXPECT_EQ(accepts.force_set_dn, 530);
+  State squeezes = in_session(Seated);
+  squeezes.receiving.giver = wire::kOperatorPeer;
+  squeezes.store.record.peer = kPallet;
+  EXPECT_EQ(obey(squeezes, numbered(wire::squeeze_command({530, 700}), 1)).result, CommandResult::Ok);
+  EXPECT_EQ(squeezes.store.record.peer, kPallet);
+  State offers = in_session(Hold);
+  offers.timers.challenge.start(50);
+  EXPECT_EQ(obey(offers, numbered(wire::offer_command(kPallet), 1)).result, CommandResult::Ok);
+  EXPECT_TRUE(offers.timers.challenge.running());
+  State asks = in_session(Hold);
+  asks.measurement.local_enable = true;
+  asks.store.failed = true;
+  EXPECT_EQ(obey(asks, numbered(wire::manual_release_ask(), 1)).result, CommandResult::Ok);
+  EXPECT_TRUE(asks.store.failed);
+}
+
 TEST(TakenUp, by_a_manual_release_is_a_challenge_for_three_seconds_and_one_answer) {
   State state = in_session(Hold);
   state.measurement.local_enable = true;

@@ -106,6 +106,10 @@ TEST(ForceLoop, integrates_a_small_error_while_it_fills_and_arrived) {
   odd.config.area_udn_per_mbar = 0;
   wanted_valves(odd, 1);
   EXPECT_EQ(odd.control.integral_ubar, 300'000) << "no division by a config that is none";
+  odd.control = {.flow = Flow::Filling, .reference_dn = 530, .integral_ubar = -9'900'000};
+  squeeze_with(odd, 529);
+  wanted_valves(odd, 1);
+  EXPECT_EQ(odd.control.integral_ubar, 100'000) << "no area is the least: 1 dn is 1000 bar";
 }
 
 std::int32_t reference_after(std::int32_t before_dn, std::uint32_t elapsed_ms) {

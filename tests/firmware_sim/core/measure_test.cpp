@@ -15,6 +15,8 @@ TEST(Measure, force_is_area_times_net_pressure_and_the_spring) {
   EXPECT_EQ(squeeze_dn(config, 4'000'000, 0), 1037);
   EXPECT_EQ(squeeze_dn(config, 4'000'000, 1'000'000), 816) << "85 % of the open side pushes back";
   EXPECT_EQ(squeeze_dn(config, 0, 1'000'000), -220);
+  EXPECT_EQ(squeeze_dn(config, 0, 8'000'000), -1762) << "85 % to the last per mille";
+  EXPECT_EQ(squeeze_dn(config, 0, 8'004'000), -1763);
   config.spring_dn = 400;
   EXPECT_EQ(squeeze_dn(config, 4'000'000, 0), 1437);
   config.passive = true;
@@ -29,11 +31,15 @@ TEST(Measure, pressure_is_what_makes_a_force_and_never_under_nothing) {
   EXPECT_EQ(pressure_mbar(config, 1037, -500), 3999) << "a sensor under zero pushes nothing back";
   EXPECT_EQ(pressure_mbar(config, -100, 0), 0);
   EXPECT_EQ(pressure_mbar(config, 100'000, 0), 20000);
+  EXPECT_EQ(pressure_mbar(config, 0, 8000), 6800) << "85 % to the last per mille";
   config.spring_dn = 400;
   EXPECT_EQ(pressure_mbar(config, 1037, 0), 2457);
   config.spring_dn = 0;
+  config.open_ratio_permille = 1000;
+  EXPECT_EQ(pressure_mbar(config, 0, 0), 0);
   config.area_udn_per_mbar = 0;
   EXPECT_EQ(pressure_mbar(config, 1, 0), 20000);
+  EXPECT_EQ(pressure_mbar(config, -1, 1'003'000), 3000) << "no area is the least: 1 dn is 1000 bar";
   config.area_udn_per_mbar = 1;
   EXPECT_EQ(pressure_mbar(config, 0, 0), 0);
 }
@@ -73,6 +79,9 @@ TEST(Measure, begins_with_the_first_readings_and_then_follows_them_in_eight_mill
   EXPECT_EQ(m.close_ubar[0], 4'450'000);
   observe(config, sensors, 500, m);
   EXPECT_EQ(m.close_ubar[0], 4'800'000) << "never past the reading";
+  sensors.close_mbar[1] = 4820;
+  observe(config, sensors, 1, m);
+  EXPECT_EQ(m.close_ubar[1], 4'120'000);
   EXPECT_EQ(m.supply_mbar, 6000);
   EXPECT_EQ(m.separation_10um, 3000);
 }
@@ -92,6 +101,14 @@ TEST(Measure, a_reading_that_cannot_be_is_cut_to_what_can) {
   observe(config, sensors, 1, high);
   EXPECT_EQ(high.close_ubar[0], 20'000'000);
   EXPECT_EQ(high.close_ubar[1], 20'000'000);
+}
+
+TEST(Measure, jaws_do_not_stand_still_before_they_were_seen_twice) {
+  Measurement m;
+  observe(Config{}, Sensors{.separation_10um = 0}, 1, m);
+  EXPECT_EQ(m.still_ms, 0);
+  observe(Config{}, Sensors{.separation_10um = 0}, 1, m);
+  EXPECT_EQ(m.still_ms, 1);
 }
 
 TEST(Measure, jaws_stand_still_within_thirty_micrometres_of_where_they_stopped) {
@@ -142,6 +159,20 @@ TEST(Measure, speed_is_what_the_separation_lost_over_the_last_milliseconds) {
     observe(config, sensors, 1000, m);
     EXPECT_EQ(m.closing_mm_s, 0) << "a long step is all there is to know";
   }
+}
+
+TEST(Measure, speed_lags_by_a_sixteenth_a_millisecond) {
+  Measurement m;
+  Sensors sensors = at_rest();
+  observe(Config{}, sensors, 1, m);
+  EXPECT_EQ(m.lagging_um, 30'000);
+  sensors.separation_10um -= 160;
+  observe(Config{}, sensors, 1, m);
+  EXPECT_EQ(m.lagging_um, 29'900);
+  EXPECT_EQ(m.closing_mm_s, 1500 / 16);
+  observe(Config{}, sensors, 16, m);
+  EXPECT_EQ(m.lagging_um, 28'400);
+  EXPECT_EQ(m.closing_mm_s, 0);
 }
 
 TEST(Measure, a_pressure_out_of_range_is_trouble_after_3_ms_whichever_sensor_it_is) {

@@ -119,6 +119,18 @@ TEST(PeerHolds, only_where_every_word_of_it_is_so) {
        hears({.state = StateId::Taken, .hold_stable = true, .f_low_dn = 399}),
        hears({.state = StateId::Taken, .hold_stable = true, .f_low_dn = std::nullopt}),
        [](State& s) { s.peers.advance(70); }, [](State& s) { s.layouts.committed = false; },
+       [](State& s) {  // its state alone is fresh
+         s.peers.advance(69);
+         s.peers.hear(wire::Received<wire::NodeState>{
+             {kPedestal, 3}, {.state = StateId::Taken, .hold_stable = true, .f_low_dn = 400}});
+         s.peers.advance(1);
+       },
+       [](State& s) { s.peers = {}; },
+       [](State& s) {  // any force is enough, but it says none
+         s.layouts.layout.peers[0].f_required_dn = 1;
+         s.layouts.layout.peers[1].f_required_dn = 1;
+         hears({.state = StateId::Taken, .hold_stable = true, .f_low_dn = std::nullopt})(s);
+       },
        [](State& s) { s.layouts.layout.peer_count = 0; }, [](State& s) { s.store.record.peer = 9; },
        [](State& s) {
          s.peers.hear(wire::Received<wire::FaultReport>{
@@ -222,6 +234,24 @@ TEST(NoPart, is_proven_at_the_end_stops_with_a_layout_too) {
   EXPECT_FALSE(proven(51));
   EXPECT_FALSE(proven(5949));
   EXPECT_TRUE(proven(5950)) << "the jaws go no further";
+}
+
+TEST(NoPart, is_not_proven_at_an_end_stop_where_a_part_may_be) {
+  State state = made(StateId::Ready);
+  const auto proven_of = [&state](std::uint16_t contact_10um, std::int32_t separation_10um) {
+    state.layouts.layout.separation_contact_10um = contact_10um;
+    state.layouts.layout.separation_open_10um = 7000;
+    state.measurement.separation_10um = separation_10um;
+    return no_part_proven(state);
+  };
+  EXPECT_FALSE(proven_of(60, 40)) << "the window is 0.1 mm to 1.1 mm";
+  EXPECT_FALSE(proven_of(60, 10));
+  EXPECT_TRUE(proven_of(60, 9));
+  EXPECT_FALSE(proven_of(5960, 5950)) << "the window is 59.1 mm to 60.1 mm";
+  EXPECT_FALSE(proven_of(5960, 6000));
+  EXPECT_FALSE(proven_of(5960, 5910));
+  EXPECT_TRUE(proven_of(5960, 5909));
+  EXPECT_TRUE(proven_of(5960, 6011));
 }
 
 TEST(ClearOfPart, two_millimetres_past_the_window_or_fully_open) {

@@ -344,6 +344,21 @@ std::vector<int> outcomes_of(State state, int ms) {
   return tokens;
 }
 
+TEST(OutcomesSaid, begin_with_the_newest_however_often_there_was_none) {
+  State state = made(StateId::Hold);
+  state.store.record.custody = Custody::Sole;
+  for (const int idle_ms : {1, 101, 201}) {
+    State one = state;
+    for (const wire::Custody& custody : said<wire::Custody>(one, idle_ms)) EXPECT_FALSE(custody.past());
+    one.store.record.outcomes.fill({.peer = 2, .token = 42, .pair = 52});
+    one.store.record.outcomes[1] = {.retained = true, .peer = 3, .token = 43, .pair = 53};
+    const auto custodies = said<wire::Custody>(one, 100);
+    ASSERT_FALSE(custodies.empty());
+    EXPECT_TRUE(custodies.back().past());
+    EXPECT_EQ(custodies.back().token, 42) << idle_ms;
+  }
+}
+
 TEST(OutcomesSaid, take_turns_every_100_ms_but_for_the_one_that_is_said_now) {
   State state = made(StateId::Hold);
   for (std::uint8_t i = 0; i < 4; ++i) {

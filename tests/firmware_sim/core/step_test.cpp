@@ -188,9 +188,11 @@ TEST(Bus, that_falls_silent_stops_the_jaws_and_makes_all_qualify_again_when_it_i
     EXPECT_TRUE(node.state.host.alive());
     node.state.layouts.committed = committed;
     node.state.release_guard.good_ms = 99;
+    node.state.release_guard.peer_permits = true;
     node.state.release_guard.decided_before = true;
     node.inputs.bus.off = false;
     node.step();
+    EXPECT_FALSE(node.state.release_guard.peer_permits);
     EXPECT_FALSE(node.state.host.alive());
     EXPECT_EQ(node.state.peers.find(kPedestal)->custody_fresh.running(), !committed);
     EXPECT_EQ(node.state.release_guard.good_ms, 0);
@@ -234,6 +236,7 @@ TEST(Release, is_watched_by_what_record_and_layout_say_of_the_peer) {
     Node node = giver(custody);
     hear_hold(node, 400);
     EXPECT_FALSE(node.state.release_guard.peer_permits) << "no handoff is under way";
+    EXPECT_EQ(node.state.release_guard.peer, 0);
   }
 }
 
