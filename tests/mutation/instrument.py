@@ -176,12 +176,16 @@ class Walk:
             return self.initializer(node, self.scope(node), result)
         if kind == K.PARM_DECL:
             return
-        if kind == K.LAMBDA_EXPR:
+        if kind == K.LAMBDA_EXPR:  # whatever follows it does not follow what it does
             result, followed = None, False
         if kind == K.CALL_EXPR and node.spelling == "keeps":
             return
         if kind.is_expression():
             self.expression(node, function)
+        if kind == K.BINARY_OPERATOR:
+            kids = list(node.get_children())
+            if len(kids) == 2 and self.rule(self.between(*kids), self.file.slice(kids[1])) == "decides":
+                return  # whatever is on its left
         if kind == K.IF_STMT:
             return self.branch(node, function, followed, result)
         if kind == K.SWITCH_STMT:
@@ -338,13 +342,10 @@ class Walk:
         elif operator in ("&&", "||"):
             other = "||" if operator == "&&" else "&&"
             choices = [f"({a}) {other} ({b})"]
-            # firmware_sim/core/rules.hpp: here every rule is kept, so `a && keeps` and `a || !keeps` are a, `a && !keeps` and
-            # `a || keeps` are b: those two are no mutants
-            kept = re.fullmatch(r"(!?)keeps\([\w:]+\)", b)
-            says_nothing = kept is not None and (operator == "&&") == (kept.group(1) == "")
-            if kept is None or says_nothing:
+            rule = self.rule(operator, b)
+            if rule != "decides":
                 choices.append(f"static_cast<bool>({b})")
-            if not says_nothing:
+            if rule != "says nothing":
                 choices.append(f"static_cast<bool>({a})")
             self.file.mutate(node, choices, "logical", function)
         elif operator in ARITHMETIC and T.POINTER not in (left.type.get_canonical().kind, right.type.get_canonical().kind):
@@ -353,6 +354,15 @@ class Walk:
             self.file.mutate(node, both(BITWISE[operator]), "bitwise", function)
         elif operator in ASSIGNMENTS:
             self.file.mutate(node, both(ASSIGNMENTS[operator]), "assignment", function)
+
+    @staticmethod
+    def rule(operator, right):
+        """firmware_sim/core/rules.hpp: here every rule is kept. So `a && keeps` and `a || !keeps` are a, the right one says
+        nothing; and it decides `a && !keeps` and `a || keeps`, whatever a is."""
+        kept = re.fullmatch(r"(!?)keeps\([\w:]+\)", right)
+        if kept is None or operator not in ("&&", "||"):
+            return ""
+        return "says nothing" if (operator == "&&") == (kept.group(1) == "") else "decides"
 
     def unary(self, node, operand, function):
         text, a = self.file.slice(node), self.file.slice(operand)
