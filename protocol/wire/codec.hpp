@@ -85,8 +85,8 @@ constexpr const Address& address_of(MessageType type) {
 /// The same of a field, in two words that fold to constants wherever the row is one.
 struct FieldRule {
   enum Kind : std::uint32_t { Number, Named, FaultCodes };
-  std::uint32_t shape = 0;  ///< start, length, kind: 8 bits each
-  std::uint32_t names = 0;  ///< Named: a bit for each legal value
+  std::uint32_t shape;  ///< start, length, kind: 8 bits each
+  std::uint32_t names;  ///< Named: a bit for each legal value
 
   constexpr FieldRule(std::uint32_t shape_of, std::uint32_t names_of) : shape(shape_of), names(names_of) {}
   [[gnu::always_inline]] constexpr explicit FieldRule(const FieldSpec& field)

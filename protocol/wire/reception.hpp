@@ -32,14 +32,12 @@ class CounterCheck {
   /// Precondition: counter 0..14.
   constexpr CounterVerdict accept(std::uint8_t counter) {
     const bool in_order = !heard_ || follows(counter, last_);
-    if (!in_order && !(strayed_ && follows(counter, stray_))) {
+    if (!in_order && !(in_a_row_ == 0 && follows(counter, stray_))) {
       in_a_row_ = 0;
-      strayed_ = true;
       stray_ = counter;
       return CounterVerdict::Discarded;
     }
     heard_ = true;
-    strayed_ = false;
     stray_ = 0;
     last_ = counter;
     if (in_a_row_ < kInARow) ++in_a_row_;
@@ -56,10 +54,9 @@ class CounterCheck {
   }
 
   std::uint8_t last_ = 0;
-  std::uint8_t stray_ = 0;  ///< the last frame's counter where it was out of order
-  std::uint8_t in_a_row_ = 0;
+  std::uint8_t stray_ = 0;     ///< the last frame's counter where it was out of order
+  std::uint8_t in_a_row_ = 0;  ///< 0 after a frame out of order
   bool heard_ = false;
-  bool strayed_ = false;  ///< the last frame was out of order
 };
 
 /// A CounterCheck with freshness: time since the last usable frame. Never heard is the same as lost.

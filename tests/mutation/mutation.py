@@ -61,7 +61,7 @@ def reach(program, folder):
 
 def compiler_kills(mutant, folder):
     """Whether the compiler refuses its own checks with this mutant in what it evaluates."""
-    return subprocess.run(["g++", "-std=c++20", "-w", "-Wno-narrowing", "-fsyntax-only", f"-DPINJAW_MUTANT={mutant['id']}",
+    return subprocess.run(["g++", "-std=c++20", "-w", "-Wno-narrowing", "-fsyntax-only", "-fmax-errors=1", f"-DPINJAW_MUTANT={mutant['id']}",
                            f"-I{folder / 'tree'}", f"-I{ROOT}", "-xc++", ROOT / "tests/protocol/wire/constant_checks.hpp"],
                           capture_output=True).returncode != 0
 

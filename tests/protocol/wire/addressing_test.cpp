@@ -159,7 +159,7 @@ TEST(Messages, that_say_nothing_are_empty_behind_their_header) {
   EXPECT_EQ(to_word(pack(Force{}, {.node = 1}).data) >> 16, 0xFFFFFFFFFFFFU);
   EXPECT_EQ(to_word(pack(Pneumatics{}, {.node = 1}).data) >> 16, 0xFC0FFFFFFFFFU);
   EXPECT_EQ(Identity{}.page, IdentityPage::Product);
-  for (std::uint8_t page = 0; page < 5; ++page) {
+  for (std::uint8_t page = 0; page < 16; ++page) {  // from 5 on there is none, and nothing to say of it
     const Frame frame = pack(Identity{.page = static_cast<IdentityPage>(page)}, {.node = 1});
     EXPECT_EQ(to_word(frame.data) >> 16, page);
   }

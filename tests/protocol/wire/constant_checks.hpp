@@ -91,6 +91,8 @@ static_assert(ValueName{}.value == 0 && PairSide{}.node == 0 && PairSide{}.layou
 static_assert(MessageSpec{}.base_id == 0 && MessageSpec{}.per_node && MessageSpec{}.period_ms == 0);
 static_assert(detail::Address{}.base_id == 0 && detail::Address{}.legal_nodes == 0);
 
+static_assert(parse<Force>(pack(Force{.f_set_dn = 771}, {.node = 3}))->message == Force{.f_set_dn = 771});
+
 static_assert(Synchronisation{}.source == 0 && Synchronisation{}.receiver == 15 &&
               Synchronisation{}.number == 0);
 static_assert(ones(0) == 0 && ones(1) == 1 && ones(63) == ~std::uint64_t{0} >> 1 &&

@@ -78,6 +78,13 @@ TEST(CounterCheck, forgets_a_stray_once_the_row_goes_on) {
   EXPECT_EQ(check.accept(0), CounterVerdict::Discarded) << "13 is no longer where a row may begin";
 }
 
+TEST(CounterCheck, differs_from_another_in_each_thing_it_keeps) {
+  EXPECT_NE(after({4}), after({5})) << "the last counter";
+  EXPECT_NE(after({4, 11}), after({4, 12})) << "the stray";
+  EXPECT_NE(after({4, 5}), after({5})) << "how many in a row";
+  EXPECT_NE(after({0, 0}), after({})) << "whether one was heard";
+}
+
 TEST(Reception, never_heard_is_not_fresh) {
   EXPECT_FALSE(Reception{}.fresh());
 }

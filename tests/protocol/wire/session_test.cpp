@@ -101,6 +101,9 @@ TEST(CommandGate, differs_from_another_in_whatever_it_keeps) {
   EXPECT_EQ(one, other);
   other.remember(numbered(plain_command(Op::Abort), 7, 1), {});
   EXPECT_NE(one, other);
+  other = one;
+  other.open(8);
+  EXPECT_NE(one, other);
 }
 
 TEST(Countdown, runs_until_its_time_has_passed_and_never_below) {
@@ -115,8 +118,10 @@ TEST(Countdown, runs_until_its_time_has_passed_and_never_below) {
   EXPECT_FALSE(countdown.running());
   EXPECT_EQ(countdown.left_ms(), 0);
   countdown.start(60000);
+  EXPECT_NE(countdown, Countdown{});
   countdown.stop();
   EXPECT_FALSE(countdown.running());
+  EXPECT_EQ(countdown, Countdown{});
 }
 
 TEST(Times, are_those_of_the_specification) {
