@@ -261,8 +261,9 @@ TEST(TwoSlotsOrder, a_store_of_one_part_leaves_the_other_and_ends_where_it_says)
 }
 
 TEST(BlankSlots, are_all_0xFF_and_tell_a_memory_that_was_never_written_from_one_that_is_lost) {
-  for (const std::uint8_t byte : Memory{}.records[0]) EXPECT_EQ(byte, 0xFF);
-  for (const std::uint8_t byte : Memory{}.layouts[1]) EXPECT_EQ(byte, 0xFF);
+  const Memory fresh;
+  for (const std::uint8_t byte : fresh.records[0]) EXPECT_EQ(byte, 0xFF);
+  for (const std::uint8_t byte : fresh.layouts[1]) EXPECT_EQ(byte, 0xFF);
   const Memory lost = memory_of({});
   for (const std::size_t blank : {std::size_t{0}, std::size_t{1}}) {
     Memory half = lost;
