@@ -143,6 +143,7 @@ def architecture(program):
             shutil.copytree(ROOT / part, folder / part, ignore=lambda _, names: [n for n in names if Path(n).suffix not in ("", ".cpp", ".hpp", ".py", ".md", ".pml", ".sh")])
         environment = {**os.environ, "PINJAW_SEEDED_SOURCE_DIR": name}
         environment.pop("PINJAW_FIGURES", None)
+        environment.pop("GTEST_OUTPUT", None)
         status, output = run(program, env=environment)
         verdict.take("the tree as it is passes", status == 0, output)
         # a folder of its own for the last: other tests cannot judge a folder that the page does not list
