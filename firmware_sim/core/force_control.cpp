@@ -127,6 +127,8 @@ std::int32_t force_set_dn(const State& state) {
   const std::int32_t light_dn = state.layouts.layout.f_light_dn;
   std::int32_t set_dn = 0;
   switch (state.id) {
+    default:
+      break;
     case StateId::Seating:
     case StateId::Seated:
       set_dn = light_dn;
@@ -140,9 +142,6 @@ std::int32_t force_set_dn(const State& state) {
       break;
     case StateId::Relax:
       set_dn = std::max(light_dn, state.force_set_dn * kRelaxPercent / 100);
-      break;
-    default:
-      break;
   }
   const std::int32_t most_dn = force_limit_dn(state) - state.config.uncertainty_dn;
   return std::min(set_dn, std::max<std::int32_t>(most_dn, 0));

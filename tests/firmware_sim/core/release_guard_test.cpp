@@ -248,6 +248,25 @@ TEST(ReleaseGuard, reads_damaged_frames_as_the_codec_does) {
   EXPECT_GT(whole, 1000);
 }
 
+TEST(ReleaseGuard, lets_only_how_a_past_handoff_ended_stand_beside_what_was_said) {
+  for (unsigned fact = 0; fact < 16; ++fact) {
+    wire::Frame frame = wire::pack(take(), {.node = kPedestal, .counter = 4});
+    frame.data[2] = static_cast<std::uint8_t>((frame.data[2] & 0xF0U) | fact);
+    frame.data[7] = 0xFF;
+    frame.data[0] = wire::detail::checksum({wire::MessageType::Custody, kPedestal}, frame.data);
+    ReleaseGuard guard;
+    guard.peer = kPedestal;
+    guard.token = 7;
+    guard.custody.counter = 3;
+    guard.custody.in_a_row = 3;
+    guard.custody.good = true;
+    watch(guard, arm_config(), kRelease, std::vector<wire::Frame>{frame}, false, 0);
+    const auto is = [fact](wire::Fact other) { return fact == static_cast<unsigned>(other); };
+    const bool stands = is(wire::Fact::Take) || is(wire::Fact::Released) || is(wire::Fact::Retain);
+    EXPECT_EQ(guard.custody.good, stands) << fact;
+  }
+}
+
 TEST(ReleaseGuard, permits_a_release_by_hand_only_as_asked_and_answered_with_the_local_enable) {
   NvmRecord record;
   record.custody = Custody::Decided;
