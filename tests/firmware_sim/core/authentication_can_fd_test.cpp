@@ -36,7 +36,7 @@ bool giver_lets_go(Bench& bench, const std::function<wire::Frame(const wire::Fra
   return bench.arm().id() == StateId::Opening || bench.arm().id() == StateId::Ready;
 }
 
-TEST(OnClassicCan, forged_custody_facts_make_a_giver_with_a_key_let_go) {
+TEST(AuthenticatedOnClassicCan, forged_custody_facts_make_a_giver_with_a_key_let_go) {
   Bench bench;
   bench.share_key(kKeyOfTheCell);
   bench.load_all();
