@@ -53,7 +53,7 @@ function(pinjaw_library name)
 endfunction()
 
 # pinjaw_test(NAME SOURCES ... DEPENDS ... USES ... [LABELS ...] [TIMEOUT s])
-# A test labelled `long` runs under ./dev test --all only, one labelled `nightly` there and under ./dev safety, which runs those labelled `promise`, too. GoogleTest's main; tests/support/places.hpp tells where the checkout and the programs are.
+# A test labelled `long` runs under ./dev test --all only, one labelled `nightly` there and under ./dev safety. GoogleTest's main; tests/support/places.hpp tells where the checkout and the programs are.
 function(pinjaw_test name)
   cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;DEPENDS;USES;LABELS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})

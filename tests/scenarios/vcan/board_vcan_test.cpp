@@ -131,8 +131,9 @@ TEST(BoardOnVcan, is_the_pedestal_of_handoffs_there_and_back) {
   ASSERT_FALSE(report.is_discarded());
   EXPECT_EQ(report.at("result"), "done");
   EXPECT_EQ(report.at("steps").size(), 6U);
+  const std::set<std::string> states = states_of(report, kBoard);
   for (const char* state : {"SEATING", "SQUEEZING", "TAKEN", "HOLD", "OFFERED", "RELAX", "OPENING", "READY"})
-    EXPECT_TRUE(states_of(report, kBoard).contains(state)) << state;
+    EXPECT_TRUE(states.contains(state)) << state;
   const auto& plant = report.at("plant");
   EXPECT_EQ(plant.at("dropped"), false);
   EXPECT_GE(plant.at("min_holders"), 1);

@@ -20,9 +20,7 @@ using testing::HasSubstr;
 /// The shipped controllers' files with a key, and a short sequence, in a folder of their own.
 class Files {
  public:
-  explicit Files(bool can_fd) {
-    std::string name = (std::filesystem::temp_directory_path() / "pinjaw-keyed-XXXXXX").string();
-    folder_ = mkdtemp(name.data());
+  explicit Files(bool can_fd) : folder_(new_folder()) {
     write_key("cell.key", "00112233445566778899aabbccddeeff");
     write_key("other.key", "ffeeddccbbaa99887766554433221100");
     for (const std::string controller : {"arm", "pedestal", "pallet"}) {
