@@ -3,12 +3,10 @@
 // Times are never asserted.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <chrono>
 #include <csignal>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -20,6 +18,8 @@
 #include "protocol/bench/unix_socket.hpp"
 #include "protocol/socketcan/socket_bus.hpp"
 #include "tests/firmware_sim/support/test_cell.hpp"
+#include "tests/support/places.hpp"
+#include "tests/support/process.hpp"
 
 namespace pinjaw::jaw_app {
 namespace {
@@ -63,21 +63,18 @@ class Files {
 /// pinjaw-jaw with these files, ended by SIGTERM; serves its world when it is ready.
 class Simulated {
  public:
-  explicit Simulated(const Files& files) : child_(fork()) {
-    if (child_ != 0) return;
-    execl(std::getenv("PINJAW_JAW"), "pinjaw-jaw", files.controller().c_str(), "--bus", "can:vcan0",
-          "--world", files.world().c_str(), nullptr);
-    _exit(126);
-  }
+  explicit Simulated(const Files& files)
+      : program_({test::program("pinjaw-jaw"), files.controller(), "--bus", "can:vcan0", "--world",
+                  files.world()}) {}
   Simulated(const Simulated&) = delete;
   Simulated& operator=(const Simulated&) = delete;
   ~Simulated() {
-    kill(child_, SIGTERM);
-    waitpid(child_, nullptr, 0);
+    program_.signal(SIGTERM);
+    program_.wait();
   }
 
  private:
-  pid_t child_;
+  test::Process program_;
 };
 
 bool served(const std::string& path) {

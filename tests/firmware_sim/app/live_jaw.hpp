@@ -1,14 +1,14 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <chrono>
 #include <csignal>
-#include <cstdlib>
 #include <fstream>
 #include <functional>
+#include <memory>
+#include <optional>
 #include <sstream>
 #include <thread>
 
@@ -16,42 +16,18 @@
 #include "protocol/bench/unix_socket.hpp"
 #include "protocol/socketcan/socket_bus.hpp"
 #include "tests/firmware_sim/support/test_cell.hpp"
+#include "tests/support/places.hpp"
+#include "tests/support/process.hpp"
 
 /// pinjaw-jaw as a process on a real vcan0, and a host that takes it through a hold. Times are patience only.
 namespace pinjaw::jaw_app {
 
 using Clock = std::chrono::steady_clock;
 
-/// The program with the controllers of one file, started and ended; what it tells goes to `said`.
-class Running {
- public:
-  Running(const std::string& program, const std::string& controller, const std::string& world,
-          const std::string& said)
-      : child_(fork()) {
-    if (child_ != 0) return;
-    if (std::freopen(said.c_str(), "w", stderr) == nullptr) _exit(126);
-    execl(program.c_str(), "pinjaw-jaw", controller.c_str(), "--bus", "can:vcan0", "--world", world.c_str(),
-          nullptr);
-    _exit(126);
-  }
-  Running(const Running&) = delete;
-  Running& operator=(const Running&) = delete;
-  ~Running() {
-    if (child_ > 0) kill(child_, SIGKILL);
-  }
-
-  /// Exit code after `signal`.
-  int end(int signal) {
-    kill(child_, signal);
-    int status = 0;
-    waitpid(child_, &status, 0);
-    child_ = 0;
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
-
- private:
-  pid_t child_;
-};
+/// The command that starts pinjaw-jaw with the controllers of one file.
+inline std::vector<std::string> jaw_command(const std::string& controller, const std::string& world) {
+  return {test::program("pinjaw-jaw"), controller, "--bus", "can:vcan0", "--world", world};
+}
 
 /// A host on a socket in real time.
 class LiveHost {
@@ -128,11 +104,17 @@ class Holding : public testing::Test {
     const std::string controller = write_controller();
     const auto members = read_members({controller});
     ASSERT_TRUE(members);
-    program_ = std::make_unique<Running>(std::getenv("PINJAW_JAW"), controller, path_, said_);
+    program_.emplace(jaw_command(controller, path_), "", said_);
     world_ = world_at(path_);
     ASSERT_TRUE(world_);
     meet_host();
     take_part(members->front().kit_id);
+  }
+
+  /// Exit code of the program after `signal`.
+  int end(int signal) {
+    program_->signal(signal);
+    return program_->wait();
   }
 
   /// A host on a socket of its own, from now on.
@@ -168,7 +150,7 @@ class Holding : public testing::Test {
 
   const std::string path_ = testing::TempDir() + "pinjaw-world-" + std::to_string(getpid());
   const std::string said_ = path_ + ".said";
-  std::unique_ptr<Running> program_;
+  std::optional<test::Process> program_;
   std::unique_ptr<bench::SocketWorld> world_;
   std::unique_ptr<socketcan::SocketBus> bus_;
   std::unique_ptr<LiveHost> host_;
@@ -177,11 +159,16 @@ class Holding : public testing::Test {
   void take_part(std::uint16_t kit_id) {
     const test::TestGrip grip{.node = 1, .separation_mm = 30, .needed_n = 60};
     const wire::Layout layout = test::bare_layout(grip, kit_id);
-    ASSERT_TRUE(world_->ask(bench::Place{1, {{.node = 1, .separation_mm = 30, .needed_n = 60}}}));
-    ASSERT_TRUE(world_->ask(bench::Enable{1, true}));
+    tell(bench::Place{1, {{.node = 1, .separation_mm = 30, .needed_n = 60}}});
+    tell(bench::Enable{1, true});
     constexpr int kMostTries = 100;
     for (int tries = 0; tries < kMostTries && !holds(); ++tries) next_step(layout);
     ASSERT_TRUE(holds()) << said();
+  }
+
+  void tell(const bench::Request& request) {
+    const auto reply = world_->ask(request);
+    ASSERT_TRUE(reply) << reply.error().message;
   }
 
   [[nodiscard]] bool holds() const {

@@ -51,7 +51,7 @@ TEST_F(JawInTrouble, holds_while_its_interface_is_down_or_gone_and_answers_again
     EXPECT_TRUE(host_->command(wire::hold_command()));
   }
   expect_held();
-  EXPECT_EQ(program_->end(SIGTERM), 0);
+  EXPECT_EQ(end(SIGTERM), 0);
   EXPECT_NE(said().find("the bus is back"), std::string::npos) << said();
   EXPECT_NE(said().find("interface gone 2"), std::string::npos) << said();
 }

@@ -11,16 +11,17 @@ using JawOnVcan = Holding;
 TEST_F(JawOnVcan, keeps_the_part_when_its_host_dies_and_ends_when_told) {
   std::this_thread::sleep_for(std::chrono::seconds(1));  // without its host
   expect_held();
-  EXPECT_EQ(program_->end(SIGTERM), 0);
+  EXPECT_EQ(end(SIGTERM), 0);
   EXPECT_NE(access(path_.c_str(), F_OK), 0);
   EXPECT_EQ(said().find("bus of node"), std::string::npos) << said();
 }
 
 TEST(JawProgramOnVcan, an_interrupt_ends_it_cleanly) {
   const std::string path = testing::TempDir() + "pinjaw-interrupt-" + std::to_string(getpid());
-  Running program(std::getenv("PINJAW_JAW"), write_controller(), path, path + ".said");
+  test::Process program(jaw_command(write_controller(), path), "", path + ".said");
   ASSERT_TRUE(world_at(path));
-  EXPECT_EQ(program.end(SIGINT), 0);
+  program.signal(SIGINT);
+  EXPECT_EQ(program.wait(), 0);
 }
 
 }  // namespace

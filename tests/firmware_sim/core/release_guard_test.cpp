@@ -156,6 +156,19 @@ TEST(ReleaseGuard, permits_after_200_ms_of_a_good_peer_and_not_before) {
   EXPECT_TRUE(permits_after(240, kUnchanged));
 }
 
+/// Nothing is lost of what comes in the very step that begins the handoff.
+TEST(ReleaseGuard, hears_frames_that_come_alone_for_the_handoff_that_is_present) {
+  ReleaseGuard guard;
+  for (std::uint8_t counter = 1; counter <= 3; ++counter) {
+    const wire::Label label{.node = kPedestal, .counter = counter};
+    watch(guard, arm_config(), kRelease, wire::pack(take(), label), false);
+    watch(guard, arm_config(), kRelease, wire::pack(taken(), label), false);
+  }
+  EXPECT_FALSE(sees_peer_hold(guard, arm_config())) << "no time has passed";
+  watch(guard, arm_config(), kRelease, {}, false, 1);
+  EXPECT_TRUE(sees_peer_hold(guard, arm_config()));
+}
+
 TEST(ReleaseGuard, wants_every_term_of_the_peers_hold) {
   const auto refuses = [](auto tamper) {
     return !permits_after(1000, [&](int, std::vector<wire::Frame>& frames) {

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <sys/types.h>
-
 #include <chrono>
 #include <functional>
 #include <memory>
@@ -9,29 +7,14 @@
 #include <vector>
 
 #include "protocol/bench/unix_socket.hpp"
+#include "tests/support/process.hpp"
 
 /// pinjaw, pinjaw-jaw and candump as processes on vcan0. Times are patience only, never asserted.
 namespace pinjaw::scenario {
 
 inline const std::string kOut = OUT_DIR;  ///< where the plans are that the tests start from
 
-/// A program of its own, killed where it outlives this.
-class Process {
- public:
-  /// `output`, `errors`: files for stdout and stderr; empty: this one's.
-  explicit Process(std::vector<std::string> command, const std::string& output = {},
-                   const std::string& errors = {});
-  Process(const Process&) = delete;
-  Process& operator=(const Process&) = delete;
-  ~Process();
-
-  void signal(int number) const;
-  /// Exit code, 128 + n where signal n ended it, -1 where it does not end within `patience`.
-  int wait(std::chrono::seconds patience = std::chrono::seconds(120));
-
- private:
-  pid_t child_;
-};
+using test::Process;
 
 /// Runs `pinjaw ARGUMENTS --bus can:vcan0` to its end and gives its exit code.
 int pinjaw(std::vector<std::string> arguments, const std::string& output = {},
