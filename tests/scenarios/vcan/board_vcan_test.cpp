@@ -11,7 +11,10 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <stdexcept>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "tests/scenarios/vcan/programs.hpp"
 #include "tests/support/figures.hpp"
@@ -26,7 +29,10 @@ const std::vector<std::string> kSlowly = {"env", "LD_PRELOAD=/usr/$LIB/faketime/
                                           "FAKETIME=+0 x0.0625"};
 constexpr std::chrono::seconds kLong(600);
 
+/// Throws where ld.so would only say that it goes without.
 std::vector<std::string> slowly(const std::vector<std::string>& command) {
+  if (!shell("ls /usr/lib*/*/faketime/libfaketimeMT.so.1 >/dev/null"))
+    throw std::runtime_error("libfaketime is not installed");
   std::vector<std::string> whole = kSlowly;
   whole.insert(whole.end(), command.begin(), command.end());
   return whole;
