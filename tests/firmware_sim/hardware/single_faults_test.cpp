@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "firmware_sim/core/guards.hpp"
+#include "tests/firmware_sim/hardware/specimen.hpp"
 #include "tests/firmware_sim/support/test_cell.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/nightly.hpp"
@@ -191,7 +192,13 @@ struct Cell {
   double separation_mm = 36;
   bool opened_before = false;  ///< it gave a part away just now: air is left on its open side
   bool soft_start = true;
+  std::uint64_t specimen = 0;  ///< seed of drawn plants; 0: the study's figures
 };
+
+void draw_grippers(TestCell& cell, std::uint64_t seed) {
+  Draws draws{{.state = seed * 0x9E3779B97F4A7C15U}};
+  for (const int number : {1, 2}) draw_plant(draws, cell.world().find(number)->plant_for_tests());
+}
 
 Outcome strike(const Moment& moment, const std::string& fault, const Cell& given = {}) {
   const auto grip = [&](int node, double separation_mm, double needed_share) {
@@ -204,6 +211,7 @@ Outcome strike(const Moment& moment, const std::string& fault, const Cell& given
   };
   TestCell cell({grip(1, 30, 60.0 / 140), grip(2, given.separation_mm, 40.0 / 140)});
   cell.keep_logs(false);
+  if (given.specimen != 0) draw_grippers(cell, given.specimen);
   Striker striker(cell, moment, fault);
   cell.on_step([&] { striker.watch(); });
   if (!given.soft_start) cell.ask(bench::Break{2, "soft_start_stuck_open"});
@@ -328,6 +336,43 @@ TEST(HardwareFaults, no_single_one_presses_over_the_relief_or_drops_a_part_that_
   constexpr std::size_t kByDay = 14;
   expect_safe(kSizes[0], 0, by_night<std::size_t>(1, kByDay));
   expect_safe(kSizes[1], by_night<std::size_t>(0, kByDay / 2), by_night<std::size_t>(1, kByDay));
+}
+
+/// One of `choices`.
+template <class Choices>
+const auto& any_of(Draws& draws, const Choices& choices) {
+  const auto at = static_cast<std::size_t>(draws.between(0, static_cast<double>(std::size(choices))));
+  return choices[std::min(at, std::size(choices) - 1)];
+}
+
+/// Both grippers drawn within their tolerances, and a fault at any moment; each fourth is the hardest one, a
+/// regulator that sticks open before the touch.
+TEST(HardwareFaults, none_in_grippers_as_they_come_from_the_shop_drops_the_part_or_presses_much_harder) {
+  constexpr int kOverInAThousand = 1;
+  constexpr double kFarthest = 1.15;
+  const int count = by_night(4000, 40);
+  double worst_n = 0;
+  int struck = 0;
+  int over = 0;
+  for (int i = 1; i <= count; ++i) {
+    const auto seed = static_cast<std::uint64_t>(i);
+    Draws draws{{.state = seed * 0xD1342543DE82EF95U}};
+    const bool early = draws.half();
+    const Moment moment = early ? any_of(draws, kBeforeTouch) : any_of(draws, kMoments);
+    const std::string fault = early && draws.half() ? "regulator_open" : any_of(draws, kFaults);
+    const Outcome seen = strike(moment, fault, {.separation_mm = draws.between(8, 58), .specimen = seed});
+    EXPECT_FALSE(seen.dropped) << i << ": " << fault;
+    EXPECT_GE(seen.min_holders, 1) << i << ": " << fault;
+    struck += seen.struck ? 1 : 0;
+    over += seen.peak_n > kSingleFault * kSizes[0].max_squeeze_n ? 1 : 0;
+    worst_n = std::max(worst_n, seen.peak_n);
+  }
+  figure("HW-FAULT", "drawn grippers with a fault, the part held in all", struck);
+  figure("HW-FAULT", "of them over 1.1 of the limit", over);
+  figure("HW-FAULT", "highest force of them", worst_n, "N");
+  EXPECT_GT(struck, count / 2);
+  EXPECT_LE(1000 * over, kOverInAThousand * count);
+  EXPECT_LE(worst_n, kFarthest * kSizes[0].max_squeeze_n);
 }
 
 /// The fault that a sole holder reports within `wait_ms` of `fault`, or of whatever came of it.
