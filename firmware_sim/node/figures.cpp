@@ -37,6 +37,7 @@ void apply(const PlantFigures& figures, plant::Parameters& parameters) {
 plant::Parameters plant_parameters(const Figures& figures) {
   plant::Parameters parameters =
       plant::parameters_for({.max_squeeze_n = figures.max_squeeze_n,
+                             .uncertainty_n = figures.force_uncertainty_n,
                              .max_separation_m = figures.separation_max_mm * 1e-3,
                              .min_separation_m = figures.separation_min_mm * 1e-3});
   apply(figures.plant, parameters);

@@ -9,7 +9,8 @@ namespace pinjaw::plant {
 
 /// What sizes one gripper's pneumatics.
 struct Sizing {
-  double max_squeeze_n = 140;       ///< sum of both jaws, at kSizingPressure_Pa
+  double max_squeeze_n = 140;  ///< sum of both jaws, at kSizingPressure_Pa
+  double uncertainty_n = 12;   ///< of the force inferred from pressure: what an approach pushes with beside
   double max_separation_m = 0.060;  ///< jaws fully open
   double min_separation_m = 0.0;    ///< jaws fully closed
 };
@@ -119,7 +120,8 @@ struct Parameters {
 constexpr double kSizingPressure_Pa = 5.4e5;  // gauge; study: 140 N from 2.59e-4 m2
 
 /// The figures above with the area, stroke, relief, soft start and orifices that follow from `sizing`: a
-/// bigger gripper moves as fast under the same force.
+/// bigger gripper moves as fast under the same force. A smaller one than the study's has smaller seals and
+/// jaws, so that friction, moving mass and stiffness shrink with its force; a bigger one keeps the study's.
 Parameters parameters_for(const Sizing& sizing);
 
 }  // namespace pinjaw::plant

@@ -3,12 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "firmware_sim/core/guards.hpp"
+#include "tests/firmware_sim/hardware/specimen.hpp"
 #include "tests/firmware_sim/support/test_cell.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/nightly.hpp"
@@ -18,9 +20,21 @@ namespace {
 
 using wire::State;
 
-constexpr double kSingleFault_n = 1.10 * 140;  // I1, of the hardware's limit
-constexpr int kDecision_ms = 3;                // I5
-constexpr int kValve_ms = 20;                  // I5, after the decision
+constexpr double kSingleFault = 1.10;  // I1, of the hardware's limit
+constexpr int kDecision_ms = 3;        // I5
+constexpr int kValve_ms = 20;          // I5, after the decision
+
+/// The study's gripper, and nearly the smallest for which the soft start suffices; the same share of it is
+/// uncertain.
+struct Size {
+  double max_squeeze_n;
+  double uncertainty_n;
+};
+constexpr Size kSizes[] = {{140, 12}, {90, 8}};
+
+std::string name_of(const Size& size) {
+  return "grippers of " + std::to_string(std::lround(size.max_squeeze_n)) + " N: ";
+}
 
 /// Where the fault strikes: a node in a state of the handoff.
 struct Moment {
@@ -30,8 +44,8 @@ struct Moment {
 };
 
 constexpr Moment kMoments[] = {
-    {1, State::Hold},    {1, State::Offered}, {1, State::Relax},     {1, State::Opening}, {2, State::Ready},
-    {2, State::Seating}, {2, State::Seated},  {2, State::Squeezing}, {2, State::Taken},
+    {1, State::Hold},    {1, State::Offered},   {1, State::Relax},     {1, State::Opening}, {2, State::Ready},
+    {2, State::Seating}, {2, State::Seated, 1}, {2, State::Squeezing}, {2, State::Taken},
 };
 
 // Offsets and drifts to either side; a leak that wants a refill now and then, and one that wants it all the
@@ -172,22 +186,41 @@ class Striker {
   core::Spool told_ = core::Spool::Hold;
 };
 
-/// How the receiver comes to its part.
-struct Receiver {
+/// The grippers, and how the receiver comes to its part.
+struct Cell {
+  Size size = kSizes[0];
   double separation_mm = 36;
   bool opened_before = false;  ///< it gave a part away just now: air is left on its open side
   bool soft_start = true;
+  std::uint64_t specimen = 0;  ///< seed of drawn plants; 0: the study's figures
 };
 
-Outcome strike(const Moment& moment, const std::string& fault, const Receiver& receiver = {}) {
-  TestCell cell({{.node = 1, .separation_mm = 30, .needed_n = 60},
-                 {.node = 2, .separation_mm = receiver.separation_mm, .needed_n = 40}});
+void draw_grippers(TestCell& cell, std::uint64_t seed) {
+  Draws draws{{.state = seed * 0x9E3779B97F4A7C15U}};
+  for (const int number : {1, 2}) draw_plant(draws, cell.world().find(number)->plant_for_tests());
+}
+
+Outcome strike(const Moment& moment, const std::string& fault, const Cell& given = {}) {
+  const auto grip = [&](int node, double separation_mm, double needed_share) {
+    return TestGrip{.node = node,
+                    .separation_mm = separation_mm,
+                    .needed_n = needed_share * given.size.max_squeeze_n,
+                    .limit_n = given.size.max_squeeze_n,
+                    .max_squeeze_n = given.size.max_squeeze_n,
+                    .uncertainty_n = given.size.uncertainty_n};
+  };
+  TestCell cell({grip(1, 30, 60.0 / 140), grip(2, given.separation_mm, 40.0 / 140)});
   cell.keep_logs(false);
+  if (given.specimen != 0) draw_grippers(cell, given.specimen);
   Striker striker(cell, moment, fault);
   cell.on_step([&] { striker.watch(); });
-  if (!receiver.soft_start) cell.ask(bench::Break{2, "soft_start_stuck_open"});
+  if (!given.soft_start) cell.ask(bench::Break{2, "soft_start_stuck_open"});
   EXPECT_TRUE(cell.commission() && cell.load(1));
-  EXPECT_TRUE(!receiver.opened_before || (cell.hand_over(1, 2) && cell.hand_over(2, 1)));
+  if (given.opened_before) {
+    EXPECT_TRUE(cell.hand_over(1, 2));
+    cell.run_ms(300);  // until the giver is clear of the part
+    EXPECT_TRUE(cell.hand_over(2, 1));
+  }
   cell.run_ms(100);
   striker.armed = true;
   cell.run_ms(20);
@@ -206,38 +239,51 @@ const std::vector<Moment> kBeforeTouch = {{2, State::Ready},        {2, State::S
                                           {2, State::Seating, 60},  {2, State::Seating, 120},
                                           {2, State::Seating, 200}, {2, State::Seating, 400}};
 
-TEST(HardwareFaults,
-     a_regulator_that_sticks_open_before_the_touch_presses_within_the_limit_of_a_single_fault) {
+/// Wherever the part is and whenever it sticks.
+void expect_no_throw(const Size& size, const std::vector<double>& parts_mm,
+                     const std::vector<Moment>& moments) {
   double worst_n = 0;
   int slowest_ms = 0;
   int runs = 0;
-  for (const double at_mm : by_night<std::vector<double>>(kParts_mm, {56, 30})) {
-    for (const Moment& moment : by_night<std::vector<Moment>>(kBeforeTouch, {{2, State::Ready}})) {
+  for (const double at_mm : parts_mm) {
+    for (const Moment& moment : moments) {
       for (const bool opened_before : {false, true}) {
-        const Outcome seen = strike(moment, "regulator_open", {at_mm, opened_before});
-        EXPECT_FALSE(seen.dropped) << at_mm;
-        EXPECT_TRUE(seen.struck || moment.state == State::Seating) << at_mm << ": or the jaws touched before";
+        const Outcome seen = strike(moment, "regulator_open", {size, at_mm, opened_before});
+        const std::string what = name_of(size) + std::to_string(at_mm) + " mm, " +
+                                 std::to_string(moment.after_ms) + " ms" + (opened_before ? ", again" : "");
+        EXPECT_FALSE(seen.dropped) << what;
+        EXPECT_TRUE(seen.struck || moment.state == State::Seating) << what << ": or the jaws touched before";
         runs += seen.struck ? 1 : 0;
-        EXPECT_LE(seen.peak_n, kSingleFault_n) << at_mm << ' ' << moment.after_ms << ' ' << opened_before;
-        EXPECT_LE(seen.unshut_ms, kValve_ms) << at_mm << ' ' << moment.after_ms << ' ' << opened_before;
+        EXPECT_LE(seen.peak_n, kSingleFault * size.max_squeeze_n) << what;
+        EXPECT_LE(seen.unshut_ms, kValve_ms) << what;
         worst_n = std::max(worst_n, seen.peak_n);
         slowest_ms = std::max(slowest_ms, seen.unshut_ms);
       }
     }
   }
-  figure("HW-FAULT", "places and times of a regulator that sticks open before the touch", runs);
-  figure("HW-FAULT", "highest force of them", worst_n, "N");
+  const std::string of = name_of(size);
+  figure("HW-FAULT", of + "places and times of a regulator that sticks open before the touch", runs);
+  figure("HW-FAULT", of + "highest force of them", worst_n, "N");
   EXPECT_GT(slowest_ms, 10) << "the guard cut while the main valve fed the close side";
+}
+
+TEST(HardwareFaults,
+     a_regulator_that_sticks_open_before_the_touch_presses_within_the_limit_of_a_single_fault) {
+  for (const Size& size : kSizes) {
+    expect_no_throw(size, by_night<std::vector<double>>(kParts_mm, {56, 30}),
+                    by_night<std::vector<Moment>>(kBeforeTouch, {{2, State::Ready}}));
+  }
 }
 
 TEST(HardwareFaults, without_the_soft_start_it_would_throw_the_jaws_at_the_part) {
   const Outcome seen =
       strike({2, State::Ready}, "regulator_open", {.separation_mm = 50, .soft_start = false});
   figure("HW-FAULT", "highest force with it but without the soft start", seen.peak_n, "N");
-  EXPECT_GT(seen.peak_n, 1.5 * kSingleFault_n);
+  EXPECT_GT(seen.peak_n, 1.5 * kSingleFault * kSizes[0].max_squeeze_n);
 }
 
-TEST(HardwareFaults, no_single_one_presses_over_the_relief_or_drops_a_part_that_can_be_held) {
+/// Each `every`th fault, from the `first`, another in each state.
+void expect_safe(const Size& size, std::size_t first, std::size_t every) {
   double worst_n = 0;
   std::string worst;
   int runs = 0;
@@ -245,21 +291,21 @@ TEST(HardwareFaults, no_single_one_presses_over_the_relief_or_drops_a_part_that_
   int slowest_ms = 0;
   int unguarded_ms = 0;
   int unshut_ms = 0;
-  const std::size_t every = by_night<std::size_t>(1, 7);  // a seventh by day, another fault in each state
-  std::size_t next = 0;
+  std::size_t next = every - first;
   for (const Moment& moment : kMoments) {
     for (const std::string& fault : kFaults) {
       if (next++ % every != 0) continue;
-      const std::string what = std::to_string(static_cast<int>(moment.state)) + " of node " +
-                               std::to_string(moment.node) + ": " + fault;
-      const Outcome seen = strike(moment, fault);
+      const std::string struck = std::to_string(static_cast<int>(moment.state)) + " of node " +
+                                 std::to_string(moment.node) + ": " + fault;
+      const std::string what = name_of(size) + struck;
+      const Outcome seen = strike(moment, fault, {size});
       EXPECT_TRUE(seen.struck) << what;
       ++runs;
       if (seen.peak_n > worst_n) {
         worst_n = seen.peak_n;
-        worst = what;
+        worst = struck;
       }
-      EXPECT_LE(seen.peak_n, kSingleFault_n) << what;
+      EXPECT_LE(seen.peak_n, kSingleFault * size.max_squeeze_n) << what;
       EXPECT_LE(seen.unguarded_ms, kDecision_ms) << what;
       EXPECT_FALSE(seen.told_to_feed) << what;
       unguarded_ms = std::max(unguarded_ms, seen.unguarded_ms);
@@ -277,12 +323,56 @@ TEST(HardwareFaults, no_single_one_presses_over_the_relief_or_drops_a_part_that_
       held += seen.dropped ? 0 : 1;
     }
   }
-  figure("HW-FAULT", "faults in states", runs);
-  figure("HW-FAULT", "of them with the part held throughout", held);
-  figure("HW-FAULT", "highest force", worst_n, "N (" + worst + ")");
-  figure("HW-FAULT", "slowest decision on a sensor", slowest_ms, "ms");
-  figure("HW-FAULT", "longest that the guard saw too much force and had not cut", unguarded_ms, "ms");
-  figure("HW-FAULT", "longest that the main valve fed the close side after a decision", unshut_ms, "ms");
+  const std::string of = name_of(size);
+  figure("HW-FAULT", of + "faults in states", runs);
+  figure("HW-FAULT", of + "of them with the part held throughout", held);
+  figure("HW-FAULT", of + "highest force", worst_n, "N (" + worst + ")");
+  figure("HW-FAULT", of + "slowest decision on a sensor", slowest_ms, "ms");
+  figure("HW-FAULT", of + "longest that the guard saw too much force and had not cut", unguarded_ms, "ms");
+  figure("HW-FAULT", of + "longest that the main valve fed the close side after a decision", unshut_ms, "ms");
+}
+
+TEST(HardwareFaults, no_single_one_presses_over_the_relief_or_drops_a_part_that_can_be_held) {
+  constexpr std::size_t kByDay = 14;
+  expect_safe(kSizes[0], 0, by_night<std::size_t>(1, kByDay));
+  expect_safe(kSizes[1], by_night<std::size_t>(0, kByDay / 2), by_night<std::size_t>(1, kByDay));
+}
+
+/// One of `choices`.
+template <class Choices>
+const auto& any_of(Draws& draws, const Choices& choices) {
+  const auto at = static_cast<std::size_t>(draws.between(0, static_cast<double>(std::size(choices))));
+  return choices[std::min(at, std::size(choices) - 1)];
+}
+
+/// Both grippers drawn within their tolerances, and a fault at any moment; each fourth is the hardest one, a
+/// regulator that sticks open before the touch.
+TEST(HardwareFaults, none_in_grippers_as_they_come_from_the_shop_drops_the_part_or_presses_much_harder) {
+  constexpr int kOverInAThousand = 1;
+  constexpr double kFarthest = 1.15;
+  const int count = by_night(4000, 40);
+  double worst_n = 0;
+  int struck = 0;
+  int over = 0;
+  for (int i = 1; i <= count; ++i) {
+    const auto seed = static_cast<std::uint64_t>(i);
+    Draws draws{{.state = seed * 0xD1342543DE82EF95U}};
+    const bool early = draws.half();
+    const Moment moment = early ? any_of(draws, kBeforeTouch) : any_of(draws, kMoments);
+    const std::string fault = early && draws.half() ? "regulator_open" : any_of(draws, kFaults);
+    const Outcome seen = strike(moment, fault, {.separation_mm = draws.between(8, 58), .specimen = seed});
+    EXPECT_FALSE(seen.dropped) << i << ": " << fault;
+    EXPECT_GE(seen.min_holders, 1) << i << ": " << fault;
+    struck += seen.struck ? 1 : 0;
+    over += seen.peak_n > kSingleFault * kSizes[0].max_squeeze_n ? 1 : 0;
+    worst_n = std::max(worst_n, seen.peak_n);
+  }
+  figure("HW-FAULT", "drawn grippers with a fault, the part held in all", struck);
+  figure("HW-FAULT", "of them over 1.1 of the limit", over);
+  figure("HW-FAULT", "highest force of them", worst_n, "N");
+  EXPECT_GT(struck, count / 2);
+  EXPECT_LE(1000 * over, kOverInAThousand * count);
+  EXPECT_LE(worst_n, kFarthest * kSizes[0].max_squeeze_n);
 }
 
 /// The fault that a sole holder reports within `wait_ms` of `fault`, or of whatever came of it.

@@ -131,5 +131,25 @@ TEST(Sizing, a_gripper_of_250_N_closes_nearly_and_opens_as_fast_as_one_of_140) {
   EXPECT_NEAR(opening_s(250) / opening_s(140), 1, 0.2);
 }
 
+TEST(Sizing, seals_of_a_smaller_gripper_let_go_at_the_same_pressure_and_those_of_a_bigger_one_rub_no_more) {
+  const Parameters usual = parameters_for({});
+  const Parameters small = parameters_for({.max_squeeze_n = 70, .uncertainty_n = 6});
+  const Parameters big = parameters_for({.max_squeeze_n = 280, .uncertainty_n = 24});
+  EXPECT_NEAR(small.friction.breakaway_n / small.air.close_area_m2,
+              usual.friction.breakaway_n / usual.air.close_area_m2, 50);
+  EXPECT_NEAR(small.jaw.moving_mass_kg, usual.jaw.moving_mass_kg / 2, 0.001);
+  EXPECT_EQ(big.friction.breakaway_n, usual.friction.breakaway_n);
+}
+
+TEST(Sizing, the_soft_start_passes_what_an_approach_pushes_with_and_opens_under_it) {
+  for (const Sizing& sizing :
+       {Sizing{.max_squeeze_n = 70, .uncertainty_n = 6}, Sizing{}, Sizing{.max_squeeze_n = 280}}) {
+    const AirParameters air = parameters_for(sizing).air;
+    EXPECT_GT((air.soft_start_pa - air.check_cracking_pa) * air.close_area_m2, 12 + sizing.uncertainty_n);
+    EXPECT_GT((air.soft_start_pa - air.check_cracking_pa) * air.close_area_m2,
+              air.soft_start_opens_pa * air.close_area_m2);
+  }
+}
+
 }  // namespace
 }  // namespace pinjaw::plant

@@ -10,7 +10,6 @@ namespace {
 
 constexpr std::uint16_t kKitId = 0xABCD;
 constexpr std::uint32_t kPartId = 0x12345678;
-constexpr double kUncertainty_n = 12;
 
 std::uint16_t dn(double newtons) {
   return static_cast<std::uint16_t>(std::lround(newtons * 10));
@@ -23,8 +22,8 @@ node::Figures figures_of(const TestGrip& grip) {
   figures.kit_id = grip.layout ? grip.layout->kit_id : kKitId;
   figures.key = grip.key;
   figures.can_fd = grip.can_fd;
-  figures.force_uncertainty_n = grip.passive ? 0 : kUncertainty_n;
-  figures.max_squeeze_n = grip.passive ? 0 : 140;
+  figures.force_uncertainty_n = grip.passive ? 0 : grip.uncertainty_n;
+  figures.max_squeeze_n = grip.passive ? 0 : grip.max_squeeze_n;
   return figures;
 }
 
@@ -196,7 +195,8 @@ bool TestCell::squeeze(int node) {
   for (const TestGrip& grip : grips_) {
     if (grip.node != node) continue;
     const wire::Layout layout = bare_layout(grip, kKitId);
-    const auto set = static_cast<std::uint16_t>(grip.passive ? 0 : layout.f_required_dn + dn(kUncertainty_n));
+    const auto set =
+        static_cast<std::uint16_t>(grip.passive ? 0 : layout.f_required_dn + dn(grip.uncertainty_n));
     return command(node, wire::squeeze_command({.set_dn = set, .permit_dn = layout.f_limit_dn})).result ==
            wire::CommandResult::Ok;
   }

@@ -19,7 +19,9 @@ struct TestGrip {
   bool passive = false;
   double separation_mm = 30;
   double needed_n = 40;
-  double limit_n = 140;
+  double limit_n = 140;            ///< of the layout
+  double max_squeeze_n = 140;      ///< of the gripper
+  double uncertainty_n = 12;       ///< of its force
   std::optional<wire::Key> key{};  ///< the controller asks for; the scripted host knows none
   bool can_fd = false;
   std::optional<wire::Layout> layout{};  ///< of a plan; nothing: one of the figures above
