@@ -14,9 +14,10 @@ struct Answer;
 struct NvmRecord;
 struct State;
 
-/// Counts commands with a wrong MAC. At the third within a minute nothing is judged any more until a minute
-/// has passed: whoever guesses has three guesses a minute, each right with 2^-16, however fast he sends.
-/// A right command in between forgives nothing, else a host that works would buy him guesses.
+/// Counts commands with a wrong MAC. At the third, each within a minute of the one before, nothing is judged
+/// any more until a minute has passed: whoever guesses has three guesses a minute, each right with 2^-16,
+/// however fast he sends. A right command in between forgives nothing, else a host that works would buy him
+/// guesses.
 class LockOut {
  public:
   static constexpr std::uint8_t kMisses = 3;

@@ -44,7 +44,8 @@ void open_session(State& state) {
   state.frozen = false;
 }
 
-/// A number that nobody knows before it is said; 1..4095.
+/// Another number in each step, 1..4095; no secret, but not one that was heard before. Knuth's multiplicative
+/// hash.
 std::uint16_t new_challenge(const State& state) {
   const std::uint32_t mixed = (state.counters.steps ^ (state.next_session << 7)) * 2654435761U;
   return static_cast<std::uint16_t>(1U + (mixed >> 16) % 4095U);

@@ -64,9 +64,7 @@ Occurrence in_seating(const State& state) {
   if (state.frozen) return std::nullopt;
   const Measurement& m = state.measurement;
   if (state.config.passive) return m.seated ? Occurrence(Event::Contact) : std::nullopt;
-  const wire::Layout& layout = state.layouts.layout;
-  if (m.separation_10um < layout.separation_contact_10um - layout.separation_tolerance_10um)
-    return Event::NoPart;
+  if (closed_past_part(state)) return Event::NoPart;
   if (separation_in_window(state)) {
     if (m.still_ms >= kContact_ms && presses(state)) return Event::Contact;
   } else if (state.control.blocked_ms >= kBlocked_ms && presses(state)) {
@@ -76,8 +74,7 @@ Occurrence in_seating(const State& state) {
 }
 
 Occurrence in_squeezing(const State& state) {
-  if (!state.config.passive && state.measurement.squeeze.high_dn > force_limit_dn(state))
-    return Event::OverForce;
+  if (presses_too_hard(state)) return Event::OverForce;
   if (slipped(state)) return Event::Slip;
   if (hold_is_stable(state) || !keeps(Rule::TakeOnStableHold)) {
     return state.receiving.giver == wire::kOperatorPeer ? Event::HoldStableForOperator
@@ -90,8 +87,7 @@ Occurrence in_squeezing(const State& state) {
 Occurrence while_held(const State& state) {
   if (state.bad_hold_ms >= kBadHold_ms && is_news(state, wire::FaultCode::HoldLost)) return Event::HoldLost;
   if (slipped(state) && is_news(state, wire::FaultCode::Slip)) return Event::Slip;
-  const bool over = !state.config.passive && state.measurement.squeeze.high_dn > force_limit_dn(state);
-  if (over && is_news(state, wire::FaultCode::OverForce)) return Event::OverForce;
+  if (presses_too_hard(state) && is_news(state, wire::FaultCode::OverForce)) return Event::OverForce;
   return std::nullopt;
 }
 

@@ -44,6 +44,10 @@ std::int32_t force_required_dn(const State& state) {
   return state.layouts.committed ? state.layouts.layout.f_required_dn : 0;
 }
 
+bool presses_too_hard(const State& state) {
+  return !state.config.passive && state.measurement.squeeze.high_dn > force_limit_dn(state);
+}
+
 bool holds_enough(const State& state) {
   if (!state.layouts.committed) return false;
   if (state.config.passive) return state.measurement.seated;
@@ -54,6 +58,12 @@ bool separation_in_window(const State& state) {
   const wire::Layout& layout = state.layouts.layout;
   const std::int32_t off_10um = state.measurement.separation_10um - layout.separation_contact_10um;
   return off_10um <= layout.separation_tolerance_10um && off_10um >= -layout.separation_tolerance_10um;
+}
+
+bool closed_past_part(const State& state) {
+  const wire::Layout& layout = state.layouts.layout;
+  return state.measurement.separation_10um <
+         layout.separation_contact_10um - layout.separation_tolerance_10um;
 }
 
 bool slipped(const State& state) {
@@ -113,10 +123,7 @@ bool no_part_proven(const State& state) {
   const bool closed = m.separation_10um <= state.config.separation_min_10um + kAtStop_10um;
   const bool open = m.separation_10um >= state.config.separation_max_10um - kAtStop_10um;
   if (!state.layouts.committed) return open || closed;
-  const wire::Layout& layout = state.layouts.layout;
-  const bool past_part =
-      m.separation_10um < layout.separation_contact_10um - layout.separation_tolerance_10um;
-  return past_part || (closed && !separation_in_window(state)) || fully_open(state);
+  return closed_past_part(state) || (closed && !separation_in_window(state)) || fully_open(state);
 }
 
 bool clear_of_part(const State& state) {

@@ -12,6 +12,9 @@ namespace pinjaw::core {
 /// uncertainty; once held it never falls by a timeout.
 std::int32_t force_limit_dn(const State& state);
 
+/// F_high over that limit; never for a passive station.
+bool presses_too_hard(const State& state);
+
 /// F_req of the committed layout; 0 for a passive station.
 std::int32_t force_required_dn(const State& state);
 
@@ -20,6 +23,9 @@ bool holds_enough(const State& state);
 
 /// |separation - contact| within the layout's tolerance.
 bool separation_in_window(const State& state);
+
+/// The jaws are closer than the committed layout's part lets them be.
+bool closed_past_part(const State& state);
 
 /// The jaws have moved by more than the slip tolerance since the part was gripped.
 bool slipped(const State& state);

@@ -127,11 +127,12 @@ void serve_identify(State& state, std::uint8_t transaction) {
 
 void serve_log(State& state, std::uint8_t transaction) {
   ServiceAnswer answer(state, wire::Service::Log, transaction, TransferStatus::Ok);
-  answer.body().put(state.counters.bad_frames, 4);
-  answer.body().put(state.counters.events_ignored, 4);
-  answer.body().put(state.counters.events_refused, 4);
-  answer.body().put(state.counters.frames_not_sent, 4);
-  answer.body().put(state.counters.steps, 4);
+  const Counters& counters = state.counters;
+  for (const std::uint32_t count :
+       {counters.bad_frames, counters.events_ignored, counters.events_refused, counters.frames_not_sent,
+        counters.steps, counters.wrong_macs, state.link.refused(), state.service.receiver.ignored()}) {
+    answer.body().put(count, 4);
+  }
   answer.start();
 }
 

@@ -41,14 +41,15 @@ struct Measurement {
   std::int32_t supply_mbar = 0;
 };
 
-/// How long something has been going on that had been for `ms` before this step; a minute stands for more.
+/// How long something has been going on that had been for `ms` before this step; a minute stands for more,
+/// and a step counts a second at most.
 std::uint16_t counted(std::uint16_t ms, bool going_on, std::uint32_t elapsed_ms);
 
 /// Takes in one step's readings.
 void observe(const Config& config, const Sensors& sensors, std::uint32_t elapsed_ms,
              Measurement& measurement);
 
-/// Squeeze that `close_mbar` would make with `open_mbar` behind it.
+/// Squeeze that `close_ubar` would make with `open_ubar` behind it.
 std::int32_t squeeze_dn(const Config& config, std::int32_t close_ubar, std::int32_t open_ubar);
 
 /// Close pressure that makes `force_dn` with `open_mbar` behind it; at least 0.

@@ -10,14 +10,23 @@ inline bool has_frame_number(const State& state) {
   return static_cast<std::uint32_t>(state.link.next_number() >> 16) < state.frame_block;
 }
 
-/// Queues a frame, sealed on CAN FD; one for which there is no room, or no number that is stored, is counted.
-inline void send(State& state, SendQueue& queue, const wire::Frame& frame) {
-  const bool numbered = !on_can_fd(state.config) || has_frame_number(state);
-  if (queue.size >= SendQueue::kCapacity || !numbered) {
+/// Queues a frame as it is; one for which there is no room is counted.
+inline void queue_frame(State& state, SendQueue& queue, const wire::Frame& frame) {
+  if (queue.size < SendQueue::kCapacity) {
+    queue.frames[queue.size++] = frame;
+  } else {
     ++state.counters.frames_not_sent;
-    return;
   }
-  queue.frames[queue.size++] = on_can_fd(state.config) ? state.link.seal(*state.config.key, frame) : frame;
+}
+
+/// Queues a frame, sealed on CAN FD; one for which there is no number that is stored is counted, too.
+inline void send(State& state, SendQueue& queue, const wire::Frame& frame) {
+  if (!on_can_fd(state.config)) return queue_frame(state, queue, frame);
+  if (has_frame_number(state)) {
+    queue_frame(state, queue, state.link.seal(*state.config.key, frame));
+  } else {
+    ++state.counters.frames_not_sent;
+  }
 }
 
 }  // namespace pinjaw::core

@@ -106,7 +106,8 @@ struct SendCounters {
   std::uint8_t identity = 0;
 };
 
-/// What went wrong on the bus and what came to nothing; read by the LOG service.
+/// What went wrong on the bus and what came to nothing; read by the LOG service, with what the link and the
+/// transfer count.
 struct Counters {
   std::uint32_t bad_frames = 0;
   std::uint32_t events_ignored = 0;

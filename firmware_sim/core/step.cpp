@@ -84,7 +84,7 @@ void listen(State& state, const Inputs& inputs, SendQueue& queue) {
 void speak(State& state, std::uint16_t elapsed_ms, SendQueue& queue) {
   if (!on_can_fd(state.config) || !has_frame_number(state)) return;
   const std::optional<wire::Frame> frame = state.link.speak(*state.config.key, elapsed_ms);
-  if (frame && queue.size < SendQueue::kCapacity) queue.frames[queue.size++] = *frame;
+  if (frame) queue_frame(state, queue, *frame);
 }
 
 void let_time_pass(State& state, std::uint16_t elapsed_ms) {

@@ -68,14 +68,13 @@ bool in_handoff(const State& state) {
 
 wire::NodeState status_of(const State& state) {
   const Measurement& m = state.measurement;
-  const std::int32_t limit_dn = force_limit_dn(state);
   return {.state = state.id,
           .armed = state.gate.armed(),
           .layout_ok = state.layouts.committed,
           .host_alive = state.host.alive(),
           .part = part_felt(state),
           .hold_stable = holds(state.id) && hold_is_stable(state),
-          .at_limit = !state.config.passive && (state.guard.cut || m.squeeze.high_dn > limit_dn),
+          .at_limit = (!state.config.passive && state.guard.cut) || presses_too_hard(state),
           .manual_enable = m.local_enable,
           .degraded = degraded(state),
           .custody = state.announced.fact,

@@ -91,6 +91,12 @@ void take_up_recorded_force(State& state) {
   state.control = {};
 }
 
+void name_handoff(NvmRecord& record, const Receiving& handoff) {
+  record.peer = handoff.giver;
+  record.token = handoff.token;
+  record.pair = handoff.pair;
+}
+
 void enter_loaded(State& state, Event event) {
   end_session(state);
   state.opening_wanted = false;
@@ -99,10 +105,8 @@ void enter_loaded(State& state, Event event) {
   if (event == Event::CmdClearEmpty) {
     state.faults.clear_all();
     state.store.readable = true;  // what it said is settled by there being no part
-    state.store.record.peer = 0;
-    state.store.record.token = 0;
-    state.store.record.pair = 0;
     state.receiving = {};
+    name_handoff(state.store.record, state.receiving);
     record_custody(state, Custody::Empty);
   }
 }
@@ -121,9 +125,7 @@ void enter_seating(State& state) {
   state.timers.state.start(move_time_ms(state, state.layouts.layout.separation_contact_10um));
   NvmRecord& record = to_store(state.store);
   record.custody = Custody::Empty;
-  record.peer = state.receiving.giver;  // who answers for the part that the jaws now close on
-  record.token = state.receiving.token;
-  record.pair = state.receiving.pair;
+  name_handoff(record, state.receiving);  // who answers for the part that the jaws now close on
   if (state.receiving.giver != wire::kOperatorPeer) {
     remember_token(record, state.receiving.giver, state.receiving.token);
   }
@@ -160,9 +162,7 @@ void enter_taken(State& state, StateId from) {
     take_up_recorded_force(state);
     return grip_here(state);
   }
-  state.store.record.peer = state.receiving.giver;
-  state.store.record.token = state.receiving.token;
-  state.store.record.pair = state.receiving.pair;
+  name_handoff(state.store.record, state.receiving);
   record_custody(state, Custody::Latched);
 }
 
@@ -170,9 +170,7 @@ void enter_hold(State& state, StateId from) {
   switch (from) {
     case StateId::Squeezing:
       state.receiving = {};
-      state.store.record.peer = wire::kOperatorPeer;
-      state.store.record.token = 0;
-      state.store.record.pair = 0;
+      name_handoff(state.store.record, {.giver = wire::kOperatorPeer});
       state.hold_proven = true;
       record_custody(state, Custody::Sole);
       break;

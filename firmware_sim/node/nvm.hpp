@@ -24,7 +24,7 @@ class Nvm {
   /// From now on nothing is stored (a fault).
   void fail() { broken_ = true; }
 
-  static constexpr unsigned kWrite_ms = 2;  // chosen: FRAM; at most 712 bytes
+  static constexpr unsigned kWrite_ms = 2;  // chosen: FRAM; at most 724 bytes
 
  private:
   struct Write {

@@ -15,7 +15,7 @@ namespace {
 using wire::State;
 
 constexpr std::int64_t kHeartbeat_us = std::int64_t{wire::kHostHeartbeat_ms} * 1000;
-constexpr std::int64_t kTime_us = 1'000'000;
+constexpr std::int64_t kTime_us = std::int64_t{wire::kTimePeriod_ms} * 1000;
 constexpr std::int64_t kHoldSpacing_us = std::int64_t{wire::kGlobalHoldSpacing_ms} * 1000;
 constexpr std::int64_t kOtherHost_us = 1'000'000;
 constexpr int kMostFramesAStep = 10'000;

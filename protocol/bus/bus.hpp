@@ -60,7 +60,7 @@ struct Statistics {
 struct Health {
   bool off = false;            ///< bus-off: nothing is sent or received
   bool passive = false;        ///< error-passive
-  std::uint32_t overruns = 0;  ///< frames or more that found no room on their way here
+  std::uint32_t overruns = 0;  ///< receive overruns since it was opened, of a frame or more each
 };
 
 /// Frames with (id & mask) == (filter id & mask) pass; standard frames only.

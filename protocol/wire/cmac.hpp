@@ -51,7 +51,6 @@ enum class MacOf : std::uint8_t {
   Synchronisation = 0x18,
   Command = 0x20,
   Number = 0x21,
-  Layout = 0x22,
 };
 
 }  // namespace pinjaw::wire

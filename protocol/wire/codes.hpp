@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <optional>
 
-/// The vocabulary of the bus: every number that has a name. The names as text are in tables.hpp.
+/// The vocabulary of the bus: every number that has a name. The names as text are in names.hpp.
 namespace pinjaw::wire {
 
 inline constexpr std::uint8_t kHostNode = 0;  ///< source of GLOBAL_HOLD from a host

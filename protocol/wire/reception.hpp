@@ -59,26 +59,4 @@ class CounterCheck {
   bool heard_ = false;
 };
 
-/// A CounterCheck with freshness: time since the last usable frame. Never heard is the same as lost.
-class Reception {
- public:
-  /// True where the frame with this counter may be used; then it is fresh for `fresh_ms`.
-  constexpr bool accept(std::uint8_t counter, std::uint16_t fresh_ms) {
-    const bool usable = check_.accept(counter) == CounterVerdict::Qualified;
-    if (usable) fresh_.start(fresh_ms);
-    return usable;
-  }
-  constexpr void advance(std::uint16_t elapsed_ms) { fresh_.advance(elapsed_ms); }
-  constexpr void forget() { *this = {}; }
-  /// A usable frame came within its time.
-  [[nodiscard]] constexpr bool fresh() const { return fresh_.running() && check_.qualified(); }
-  [[nodiscard]] constexpr bool qualified() const { return check_.qualified(); }
-  [[nodiscard]] constexpr bool heard() const { return check_.heard(); }
-  friend constexpr bool operator==(const Reception&, const Reception&) = default;
-
- private:
-  CounterCheck check_;
-  Countdown fresh_;
-};
-
 }  // namespace pinjaw::wire

@@ -27,7 +27,7 @@ enum class TransferStatus : std::uint8_t {
   Ok,
   UnknownService,
   Length,      ///< the record is shorter or longer than it says
-  WrongState,  ///< COMMIT outside EMPTY, or WRITE while a part is held
+  WrongState,  ///< COMMIT outside UNCONF and LOADED, or WRITE while a part is held
   Magic,
   Schema,
   NodeClass,

@@ -4,6 +4,7 @@
 
 #include "protocol/wire/fields.hpp"
 #include "protocol/wire/spec.hpp"
+#include "protocol/wire/timing.hpp"
 
 /// The message table: the one source of the codec, the DBC and the documents.
 namespace pinjaw::wire {
@@ -21,7 +22,7 @@ inline constexpr std::array<MessageSpec, 14> kMessages{{
      .base_id = 0x020,
      .direction = Direction::NodeToAll,
      .protection = Protection::Counter,
-     .period_ms = 100,
+     .period_ms = kFaultPeriod_ms,
      .fields = kFaultFields,
      .comment = "A fault came, stays (every 100 ms) or went."},
     {.type = MessageType::Custody,
@@ -29,7 +30,7 @@ inline constexpr std::array<MessageSpec, 14> kMessages{{
      .base_id = 0x040,
      .direction = Direction::NodeToAll,
      .protection = Protection::Counter,
-     .period_ms = 100,
+     .period_ms = kCustodyIdle_ms,
      .fields = kCustodyFields,
      .comment = "Who has the part: on change, every 20 ms during a handoff, else every 100 ms."},
     {.type = MessageType::State,
@@ -37,7 +38,7 @@ inline constexpr std::array<MessageSpec, 14> kMessages{{
      .base_id = 0x060,
      .direction = Direction::NodeToAll,
      .protection = Protection::Counter,
-     .period_ms = 20,
+     .period_ms = kStatePeriod_ms,
      .fields = kStateFields,
      .comment = "State of a controller and its heartbeat."},
     {.type = MessageType::Force,
@@ -45,7 +46,7 @@ inline constexpr std::array<MessageSpec, 14> kMessages{{
      .base_id = 0x0A0,
      .direction = Direction::NodeToAll,
      .protection = Protection::Counter,
-     .period_ms = 20,
+     .period_ms = kStatePeriod_ms,
      .fields = kForceFields,
      .comment = "Squeeze force, as the sum over both jaws of the contact force along the closing axis."},
     {.type = MessageType::HostHeartbeat,
@@ -54,7 +55,7 @@ inline constexpr std::array<MessageSpec, 14> kMessages{{
      .per_node = false,
      .direction = Direction::HostToAll,
      .protection = Protection::Counter,
-     .period_ms = 50,
+     .period_ms = kHostHeartbeat_ms,
      .fields = kHostHeartbeatFields,
      .comment = "The host lives, and who may move."},
     {.type = MessageType::Time,
@@ -63,7 +64,7 @@ inline constexpr std::array<MessageSpec, 14> kMessages{{
      .per_node = false,
      .direction = Direction::HostToAll,
      .protection = Protection::Counter,
-     .period_ms = 1000,
+     .period_ms = kTimePeriod_ms,
      .fields = kTimeFields,
      .comment = "The host's clock, for logs."},
     {.type = MessageType::Command,
@@ -85,7 +86,7 @@ inline constexpr std::array<MessageSpec, 14> kMessages{{
      .base_id = 0x200,
      .direction = Direction::NodeToAll,
      .protection = Protection::Counter,
-     .period_ms = 100,
+     .period_ms = kPneumaticsPeriod_ms,
      .fields = kPneumaticsFields,
      .comment = "Pressures and valves."},
     {.type = MessageType::LayoutStatus,
@@ -93,7 +94,7 @@ inline constexpr std::array<MessageSpec, 14> kMessages{{
      .base_id = 0x220,
      .direction = Direction::NodeToAll,
      .protection = Protection::Counter,
-     .period_ms = 500,
+     .period_ms = kLayoutStatusPeriod_ms,
      .fields = kLayoutStatusFields,
      .comment = "The layout that a controller works by."},
     {.type = MessageType::Identity,
@@ -101,7 +102,7 @@ inline constexpr std::array<MessageSpec, 14> kMessages{{
      .base_id = 0x240,
      .direction = Direction::NodeToAll,
      .protection = Protection::Counter,
-     .period_ms = 1000,
+     .period_ms = kIdentityPeriod_ms,
      .fields = kIdentityFields,
      .comment = "Who a controller is; one page a second."},
     {.type = MessageType::TransferRequest,

@@ -4,11 +4,11 @@
 #include <cstdint>
 
 /// Times of the protocol. Each freshness limit is three periods plus the worst bus delay of 8 nodes at 500
-/// kbit/s.
+/// kbit/s (docs/timing.md).
 namespace pinjaw::wire {
 
-inline constexpr std::uint16_t kPeerFresh_ms = 70;   ///< 3 x 20 ms + 6.4 ms + slack
-inline constexpr std::uint16_t kHostFresh_ms = 200;  ///< 3 x 50 ms + 8.3 ms + slack
+inline constexpr std::uint16_t kPeerFresh_ms = 70;   ///< 3 x 20 ms + 8.3 ms + slack
+inline constexpr std::uint16_t kHostFresh_ms = 200;  ///< 3 x 50 ms + 11.0 ms + slack
 inline constexpr std::uint16_t kHostHeartbeat_ms = 50;
 inline constexpr std::uint16_t kAcknowledge_ms = 50;  ///< without ACK for so long, the host repeats
 inline constexpr std::uint16_t kStatePeriod_ms = 20;
@@ -19,6 +19,7 @@ inline constexpr std::uint16_t kFaultPeriod_ms = 100;
 inline constexpr std::uint16_t kPneumaticsPeriod_ms = 100;
 inline constexpr std::uint16_t kLayoutStatusPeriod_ms = 500;
 inline constexpr std::uint16_t kIdentityPeriod_ms = 1000;
+inline constexpr std::uint16_t kTimePeriod_ms = 1000;
 inline constexpr std::uint16_t kGlobalHoldSpacing_ms = 5;
 inline constexpr std::uint8_t kGlobalHoldRepeats = 3;
 

@@ -121,14 +121,17 @@ TEST(CanFdStep, counts_a_frame_that_is_authentic_and_means_nothing) {
   EXPECT_EQ(node.state.counters.bad_frames, 2U);
 }
 
-TEST(CanFdStep, lets_its_link_speak_where_there_is_room) {
+TEST(CanFdStep, lets_its_link_speak_where_there_is_room_and_counts_what_is_left_out) {
   const wire::Frame hold = wire::pack(wire::hold_command(), {.node = kArm});
+  std::size_t wanted_beside = 0;
   for (const std::size_t answers : {0U, 22U, 23U, 24U, 25U}) {
     FdNode node;
     node.state.store.record.custody = Custody::Sole;
     node.step(Frames(answers, hold));
     EXPECT_EQ(node.said_by_link(), answers < 24 ? 1 : 0) << answers << " answers before it";
     ASSERT_LE(node.outputs.send.size, SendQueue::kCapacity);
+    if (answers == 0) wanted_beside = node.outputs.send.size;
+    EXPECT_EQ(node.outputs.send.size + node.state.counters.frames_not_sent, answers + wanted_beside);
   }
 }
 

@@ -315,7 +315,7 @@ TEST_F(LayoutService, counts_for_the_log) {
   bench.inject(broken);
   bench.run(1);
   const Bytes answer = ask({0x25, 1});
-  ASSERT_EQ(answer.size(), 23U);
+  ASSERT_EQ(answer.size(), 35U);
   EXPECT_EQ(answer[3], 1);
 }
 

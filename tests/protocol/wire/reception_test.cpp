@@ -6,9 +6,6 @@
 #include <array>
 #include <initializer_list>
 
-#include "protocol/wire/commands.hpp"
-#include "protocol/wire/session.hpp"
-
 namespace pinjaw::wire {
 namespace {
 
@@ -85,117 +82,16 @@ TEST(CounterCheck, differs_from_another_in_each_thing_it_keeps) {
   EXPECT_NE(after({0, 0}), after({})) << "whether one was heard";
 }
 
-TEST(Reception, never_heard_is_not_fresh) {
-  EXPECT_FALSE(Reception{}.fresh());
-}
-
-TEST(Reception, is_fresh_for_its_time_and_no_longer) {
-  Reception reception;
-  for (std::uint8_t counter = 0; counter < 3; ++counter) reception.accept(counter, kPeerFresh_ms);
-  EXPECT_TRUE(reception.fresh());
-  reception.advance(kPeerFresh_ms - 1);
-  EXPECT_TRUE(reception.fresh());
-  reception.advance(1);
-  EXPECT_FALSE(reception.fresh());
-}
-
-TEST(Reception, is_fresh_from_the_frame_that_may_be_used_not_from_those_before) {
-  Reception reception;
-  for (std::uint8_t counter = 0; counter < 3; ++counter) {
-    reception.advance(60);
-    reception.accept(counter, kPeerFresh_ms);
-  }
-  reception.advance(kPeerFresh_ms - 1);
-  EXPECT_TRUE(reception.fresh());
-}
-
-TEST(Reception, a_repeated_frame_keeps_nothing_alive) {
-  Reception reception;
-  for (std::uint8_t counter = 0; counter < 3; ++counter) reception.accept(counter, kPeerFresh_ms);
-  for (int i = 0; i < 10; ++i) {
-    reception.advance(20);
-    EXPECT_FALSE(reception.accept(2, kPeerFresh_ms));
-  }
-  EXPECT_FALSE(reception.fresh());
-}
-
-Command with(Command command, std::uint16_t session, std::uint8_t sequence) {
-  command.session = session;
-  command.sequence = sequence;
-  return command;
-}
-
-CommandGate armed_gate() {
-  CommandGate gate;
-  const Command arm = arm_command(0x123456, 77);
-  gate.open(900);
-  gate.remember(arm, {.op = Op::Arm, .session = 900, .next_sequence = 1});
-  return gate;
-}
-
-TEST(CommandGate, lets_nothing_but_hold_and_arm_pass_without_a_session) {
-  const CommandGate gate;
-  for (std::size_t op = 0; op < kOpCount; ++op) {
-    const Command command = with(plain_command(static_cast<Op>(op)), 900, 5);
-    const bool free = command.op == Op::Hold || command.op == Op::Arm;
-    EXPECT_EQ(gate.admit(command), free ? Admission::New : Admission::NotArmed);
-  }
-}
-
-TEST(CommandGate, answers_a_repeat_the_same_and_does_it_once) {
-  CommandGate gate = armed_gate();
-  const Command command = with(offer_command(2), 900, 1);
-  ASSERT_EQ(gate.admit(command), Admission::New);
-  gate.remember(command, {.sequence = 1, .op = Op::Offer, .result = CommandResult::BadState});
-  EXPECT_EQ(gate.admit(command), Admission::Repeated);
-  EXPECT_EQ(gate.last_answer().result, CommandResult::BadState);
-  Command other = command;
-  other.argument = 3;
-  EXPECT_EQ(gate.admit(other), Admission::OldSequence) << "same SEQ, other bytes";
-}
-
-TEST(CommandGate, refuses_old_numbers_and_foreign_sessions) {
-  CommandGate gate = armed_gate();
-  gate.remember(with(plain_command(Op::Abort), 900, 9), {});
-  EXPECT_EQ(gate.next_sequence(), 10);
-  EXPECT_EQ(gate.admit(with(plain_command(Op::Abort), 900, 8)), Admission::OldSequence);
-  EXPECT_EQ(gate.admit(with(plain_command(Op::Abort), 901, 10)), Admission::WrongSession);
-  EXPECT_EQ(gate.admit(with(plain_command(Op::Abort), 900, 200)), Admission::New);
-}
-
-TEST(CommandGate, never_wraps_within_a_session) {
-  CommandGate gate = armed_gate();
-  gate.remember(with(plain_command(Op::Abort), 900, 255), {});
-  for (int sequence = 0; sequence < 256; ++sequence) {
-    EXPECT_EQ(gate.admit(with(offer_command(1), 900, static_cast<std::uint8_t>(sequence))),
-              Admission::UsedUp);
-  }
-  SequenceIssuer issuer;
-  issuer.begin(255);
-  EXPECT_EQ(issuer.take(), 255);
-  EXPECT_FALSE(issuer.take().has_value());
-}
-
-TEST(CommandGate, a_replayed_arm_opens_no_old_session) {
-  CommandGate gate = armed_gate();
-  const Command arm = arm_command(0x123456, 77);
-  EXPECT_EQ(gate.admit(arm), Admission::Repeated);
-  gate.close();
-  EXPECT_FALSE(gate.armed());
-  EXPECT_EQ(gate.admit(arm), Admission::New) << "it gets a new session, never the closed one";
-}
-
-TEST(Commands, carry_their_arguments) {
-  const Command arm = arm_command(0xAB123456, 77);
-  EXPECT_EQ(armed_crc24(arm), 0x123456U);
-  EXPECT_EQ(armed_crc24(arm), crc24(0xAB123456));
-  EXPECT_EQ(arm.session, 77);
-  const SqueezeForces forces = squeeze_forces(squeeze_command({.set_dn = 891, .permit_dn = 1400}));
-  EXPECT_EQ(forces.set_dn, 891);
-  EXPECT_EQ(forces.permit_dn, 1400);
-  EXPECT_EQ(manual_release_ask().argument, 1);
-  EXPECT_EQ(manual_release_answer(0xABC).argument, 2);
-  EXPECT_EQ(manual_release_answer(0xABC).b, 0xABC);
+TEST(CounterCheck, begins_with_any_counter_and_has_heard_nothing_before) {
+  CounterCheck check;
+  EXPECT_FALSE(check.heard());
+  EXPECT_FALSE(check.qualified());
+  EXPECT_EQ(check.accept(9), CounterVerdict::Qualifying);
+  EXPECT_TRUE(check.heard());
+  EXPECT_EQ(check.accept(10), CounterVerdict::Qualifying);
+  EXPECT_EQ(check.accept(11), CounterVerdict::Qualified);
+  EXPECT_EQ(next_counter(13), 14);
+  EXPECT_EQ(next_counter(14), 0);
 }
 
 }  // namespace

@@ -4,8 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "protocol/wire/commands.hpp"
-#include "protocol/wire/reception.hpp"
-#include "protocol/wire/timing.hpp"
 
 namespace pinjaw::wire {
 namespace {
@@ -106,69 +104,73 @@ TEST(CommandGate, differs_from_another_in_whatever_it_keeps) {
   EXPECT_NE(one, other);
 }
 
-TEST(Countdown, runs_until_its_time_has_passed_and_never_below) {
-  Countdown countdown;
-  EXPECT_FALSE(countdown.running());
-  EXPECT_EQ(countdown.left_ms(), 0);
-  countdown.start(3);
-  countdown.advance(2);
-  EXPECT_TRUE(countdown.running());
-  EXPECT_EQ(countdown.left_ms(), 1);
-  countdown.advance(2);
-  EXPECT_FALSE(countdown.running());
-  EXPECT_EQ(countdown.left_ms(), 0);
-  countdown.start(60000);
-  EXPECT_NE(countdown, Countdown{});
-  countdown.stop();
-  EXPECT_FALSE(countdown.running());
-  EXPECT_EQ(countdown, Countdown{});
+CommandGate armed_gate() {
+  CommandGate gate;
+  const Command arm = arm_command(0x123456, 77);
+  gate.open(900);
+  gate.remember(arm, {.op = Op::Arm, .session = 900, .next_sequence = 1});
+  return gate;
 }
 
-TEST(Times, are_those_of_the_specification) {
-  EXPECT_EQ(kPeerFresh_ms, 70);
-  EXPECT_EQ(kHostFresh_ms, 200);
-  EXPECT_EQ(kHostHeartbeat_ms, 50);
-  EXPECT_EQ(kAcknowledge_ms, 50);
-  EXPECT_EQ(kStatePeriod_ms, 20);
-  EXPECT_EQ(kForceOffset_ms, 10);
-  EXPECT_EQ(kCustodyHandoff_ms, 20);
-  EXPECT_EQ(kCustodyIdle_ms, 100);
-  EXPECT_EQ(kFaultPeriod_ms, 100);
-  EXPECT_EQ(kPneumaticsPeriod_ms, 100);
-  EXPECT_EQ(kLayoutStatusPeriod_ms, 500);
-  EXPECT_EQ(kIdentityPeriod_ms, 1000);
-  EXPECT_EQ(kGlobalHoldSpacing_ms, 5);
-  EXPECT_EQ(kGlobalHoldRepeats, 3);
-  EXPECT_EQ(kCounterModulus, 15);
+TEST(CommandGate, lets_nothing_but_hold_and_arm_pass_without_a_session) {
+  const CommandGate gate;
+  for (std::size_t op = 0; op < kOpCount; ++op) {
+    const Command command = numbered(plain_command(static_cast<Op>(op)), 900, 5);
+    const bool free = command.op == Op::Hold || command.op == Op::Arm;
+    EXPECT_EQ(gate.admit(command), free ? Admission::New : Admission::NotArmed);
+  }
 }
 
-TEST(Reception, tells_whether_anything_was_heard_and_whether_it_qualified) {
-  Reception reception;
-  EXPECT_FALSE(reception.heard());
-  EXPECT_FALSE(reception.accept(0, 70));
-  EXPECT_TRUE(reception.heard());
-  EXPECT_FALSE(reception.qualified());
-  EXPECT_FALSE(reception.accept(1, 70));
-  EXPECT_TRUE(reception.accept(2, 70));
-  EXPECT_TRUE(reception.qualified());
-  EXPECT_TRUE(reception.fresh());
-  EXPECT_FALSE(reception.accept(2, 70)) << "a repeat";
-  EXPECT_FALSE(reception.qualified());
-  EXPECT_FALSE(reception.fresh()) << "not even while the time of the last good one runs";
-  reception.forget();
-  EXPECT_EQ(reception, Reception{});
+TEST(CommandGate, answers_a_repeat_the_same_and_does_it_once) {
+  CommandGate gate = armed_gate();
+  const Command command = numbered(offer_command(2), 900, 1);
+  ASSERT_EQ(gate.admit(command), Admission::New);
+  gate.remember(command, {.sequence = 1, .op = Op::Offer, .result = CommandResult::BadState});
+  EXPECT_EQ(gate.admit(command), Admission::Repeated);
+  EXPECT_EQ(gate.last_answer().result, CommandResult::BadState);
+  Command other = command;
+  other.argument = 3;
+  EXPECT_EQ(gate.admit(other), Admission::OldSequence) << "same SEQ, other bytes";
 }
 
-TEST(CounterCheck, begins_with_any_counter_and_has_heard_nothing_before) {
-  CounterCheck check;
-  EXPECT_FALSE(check.heard());
-  EXPECT_FALSE(check.qualified());
-  EXPECT_EQ(check.accept(9), CounterVerdict::Qualifying);
-  EXPECT_TRUE(check.heard());
-  EXPECT_EQ(check.accept(10), CounterVerdict::Qualifying);
-  EXPECT_EQ(check.accept(11), CounterVerdict::Qualified);
-  EXPECT_EQ(next_counter(13), 14);
-  EXPECT_EQ(next_counter(14), 0);
+TEST(CommandGate, refuses_old_numbers_and_foreign_sessions) {
+  CommandGate gate = armed_gate();
+  gate.remember(numbered(plain_command(Op::Abort), 900, 9), {});
+  EXPECT_EQ(gate.next_sequence(), 10);
+  EXPECT_EQ(gate.admit(numbered(plain_command(Op::Abort), 900, 8)), Admission::OldSequence);
+  EXPECT_EQ(gate.admit(numbered(plain_command(Op::Abort), 901, 10)), Admission::WrongSession);
+  EXPECT_EQ(gate.admit(numbered(plain_command(Op::Abort), 900, 200)), Admission::New);
+}
+
+TEST(CommandGate, never_wraps_within_a_session) {
+  CommandGate gate = armed_gate();
+  gate.remember(numbered(plain_command(Op::Abort), 900, 255), {});
+  for (int sequence = 0; sequence < 256; ++sequence) {
+    EXPECT_EQ(gate.admit(numbered(offer_command(1), 900, static_cast<std::uint8_t>(sequence))),
+              Admission::UsedUp);
+  }
+}
+
+TEST(CommandGate, a_replayed_arm_opens_no_old_session) {
+  CommandGate gate = armed_gate();
+  const Command arm = arm_command(0x123456, 77);
+  EXPECT_EQ(gate.admit(arm), Admission::Repeated);
+  gate.close();
+  EXPECT_FALSE(gate.armed());
+  EXPECT_EQ(gate.admit(arm), Admission::New) << "it gets a new session, never the closed one";
+}
+
+TEST(Commands, carry_their_arguments) {
+  const Command arm = arm_command(0xAB123456, 77);
+  EXPECT_EQ(armed_crc24(arm), 0x123456U);
+  EXPECT_EQ(armed_crc24(arm), crc24(0xAB123456));
+  EXPECT_EQ(arm.session, 77);
+  const SqueezeForces forces = squeeze_forces(squeeze_command({.set_dn = 891, .permit_dn = 1400}));
+  EXPECT_EQ(forces.set_dn, 891);
+  EXPECT_EQ(forces.permit_dn, 1400);
+  EXPECT_EQ(manual_release_ask().argument, 1);
+  EXPECT_EQ(manual_release_answer(0xABC).argument, 2);
+  EXPECT_EQ(manual_release_answer(0xABC).b, 0xABC);
 }
 
 }  // namespace
