@@ -91,12 +91,15 @@ Answer check_squeeze(const State& state, const wire::Command& command) {
   return handoff_allowed(state);
 }
 
+/// The last handoff's RETAIN must be said before the part is given to anybody else: from then on it is said
+/// as an outcome of the past, and an outcome must have been true once (R5).
+bool owes_retain(const State& state) {
+  return state.store.record.custody == Custody::Retained && state.announced.fact != wire::Fact::Retain;
+}
+
 Answer check_offer(const State& state, const wire::Command& command) {
   if (state.layouts.layout.peer(command.argument) == nullptr) return refused(Reason::PeerNotInLayout);
-  // The last handoff's RETAIN first: once another token is out it is said as an outcome of the past, and an
-  // outcome must have been true once (R5).
-  if (state.store.record.custody == Custody::Retained && state.announced.fact != wire::Fact::Retain)
-    return {CommandResult::Busy, Reason::HandoffRunning};
+  if (owes_retain(state)) return {CommandResult::Busy, Reason::HandoffRunning};
   return handoff_allowed(state);
 }
 
@@ -141,6 +144,7 @@ Decision decide_clear_fault(const State& state) {
 Answer check_manual(const State& state, const wire::Command& command) {
   if (command.argument != 1 && command.argument != 2) return refused(Reason::BadArgument);
   if (!state.measurement.local_enable) return refused(Reason::NoLocalEnable);
+  if (owes_retain(state)) return {CommandResult::Busy, Reason::HandoffRunning};
   if (command.argument == 1) return kOk;
   if (!state.timers.challenge.running() || command.b != state.challenge)
     return refused(Reason::ChallengeWrong);

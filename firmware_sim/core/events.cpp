@@ -99,16 +99,16 @@ Occurrence in_taken(const State& state) {
 }
 
 Occurrence in_offered(const State& state) {
-  const bool unanswered = !state.host.alive() && !state.answer_seen;
-  if (!state.timers.state.running() || unanswered) return Event::OfferUnanswered;
-  if (state.bad_hold_ms >= kBadHold_ms) return Event::HoldLost;
+  const bool host_there = state.host.alive() && state.host.epoch() == state.session_epoch;
+  const bool unanswered = !host_there && !state.answer_seen;
+  if (!state.timers.state.running() || unanswered || state.faults.must_hold()) return Event::OfferUnanswered;
+  if (const Occurrence fault = while_held(state)) return fault;
   const bool good = !state.timers.peer_good.running() && sees_peer_hold(state.release_guard, state.config);
-  if (state.announced.fact == wire::Fact::Offer && good) return Event::PeerHolds;
-  return while_held(state);
+  return state.announced.fact == wire::Fact::Offer && good ? Occurrence(Event::PeerHolds) : std::nullopt;
 }
 
 Occurrence in_relax(const State& state) {
-  if (!peer_holds(state)) return Event::PeerDoubted;
+  if (!peer_holds(state) || state.faults.must_hold()) return Event::PeerDoubted;
   if (slipped(state)) return Event::Slip;
   // The other channel counts frames in its own way and may want a few more.
   const bool both = permits_release(state.release_guard, state.config, state.store.record);
@@ -161,6 +161,11 @@ Occurrence by_state(const State& state) {
 
 bool moves(const State& state, Event event) {
   return reaction(*state.config.table, state.id, event).kind == ReactionKind::Go;
+}
+
+/// The force of a squeeze is permitted by a session and its host, and ends with either (2.4).
+bool host_is_lost(const State& state) {
+  return !state.host.alive() || (state.id == StateId::Squeezing && !motion_permitted(state));
 }
 
 bool giver_stale(const State& state) {
@@ -231,7 +236,8 @@ void track_air(State& state, std::uint16_t elapsed_ms) {
 /// slips by turns keeps most of its push.
 void track_block(State& state, std::uint16_t elapsed_ms) {
   std::uint16_t& blocked_ms = state.control.blocked_ms;
-  const bool told = state.id == StateId::Seating && !state.frozen && state.control.flow == Flow::Filling;
+  const bool told = state.id == StateId::Seating && !state.frozen && motion_permitted(state) &&
+                    state.control.flow == Flow::Filling;
   if (told && state.measurement.still_ms > 0) {
     blocked_ms = counted(blocked_ms, true, elapsed_ms);
   } else {
@@ -277,7 +283,7 @@ std::optional<Event> next_event(const State& state) {
       (moves(state, Event::StoreFault) || is_news(state, wire::FaultCode::CustodyMemory))) {
     return Event::StoreFault;
   }
-  if (!state.host.alive() && moves(state, Event::HostLost)) return Event::HostLost;
+  if (host_is_lost(state) && moves(state, Event::HostLost)) return Event::HostLost;
   if (giver_stale(state) && is_news(state, wire::FaultCode::PeerLost)) return Event::PeerLost;
   return by_state(state);
 }

@@ -96,6 +96,7 @@ Valves approach(State& state, std::int32_t elapsed_ms) {
   const std::int32_t light_dn = force_set_dn(state);
   if (separation_in_window(state) && m.still_ms > 0) return regulate(state, light_dn, elapsed_ms);
   Valves valves;
+  if (!motion_permitted(state)) return valves;
   if (m.open_ubar / 1000 > state.config.pre_vent_mbar) {
     valves.pre_vent = true;
     return valves;
@@ -116,7 +117,7 @@ Valves approach(State& state, std::int32_t elapsed_ms) {
 Valves open_while_permitted(State& state) {
   Valves valves;
   if (fully_open(state)) state.opening_wanted = false;
-  if (state.opening_wanted && state.gate.armed() && state.host.permits()) valves.spool = Spool::Open;
+  if (state.opening_wanted && motion_permitted(state)) valves.spool = Spool::Open;
   return valves;
 }
 

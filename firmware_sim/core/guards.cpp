@@ -44,6 +44,10 @@ std::int32_t force_required_dn(const State& state) {
   return state.layouts.committed ? state.layouts.layout.f_required_dn : 0;
 }
 
+bool motion_permitted(const State& state) {
+  return state.gate.armed() && state.host.permits();
+}
+
 bool presses_too_hard(const State& state) {
   return !state.config.passive && state.measurement.squeeze.high_dn > force_limit_dn(state);
 }

@@ -12,6 +12,9 @@ namespace pinjaw::core {
 /// uncertainty; once held it never falls by a timeout.
 std::int32_t force_limit_dn(const State& state);
 
+/// I3: the session is current, and the host that opened it is there and lets this node move.
+bool motion_permitted(const State& state);
+
 /// F_high over that limit; never for a passive station.
 bool presses_too_hard(const State& state);
 

@@ -49,12 +49,9 @@ void Peers::hear(const wire::Received<wire::FaultReport>& fault) {
   if (peer == nullptr) return;
   // A fault is believed before three reports are in order: they are rare, and doubt is the safe side.
   if (peer->fault_counter.accept(fault.label.counter) == wire::CounterVerdict::Discarded) return;
-  if (fault.message.severity < wire::Severity::Hold) return;
-  if (fault.message.active) {
+  // That one is over says nothing of others: they run out.
+  if (fault.message.severity >= wire::Severity::Hold && fault.message.active)
     peer->faulty.start(kFaultKept_ms);
-  } else {
-    peer->faulty.stop();
-  }
 }
 
 void Peers::advance(std::uint16_t elapsed_ms) {

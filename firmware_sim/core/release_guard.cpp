@@ -79,22 +79,23 @@ void hear_state(ReleaseGuard& guard, const Release& release, const wire::Frame& 
   guard.state.fresh.start(kFreshTime_ms);
 }
 
-void hear_command(ReleaseGuard& guard, const wire::Frame& frame, bool local_enable) {
+void hear_command(ReleaseGuard& guard, const Release& release, const wire::Frame& frame, bool local_enable) {
   constexpr unsigned kManualRelease = 10;
   if (bits(frame, 16, 4) != kManualRelease || !local_enable) return;
   const unsigned step = bits(frame, 20, 4);
   if (step == 1) guard.asked.start(kAnswer_ms);
-  if (step == 2 && guard.asked.running()) guard.hand_permits = true;
+  const bool answered = release.challenge != 0 && bits(frame, 52, 12) == release.challenge;
+  if (step == 2 && answered && guard.asked.running()) guard.hand_permits = true;
 }
 
 void hear(ReleaseGuard& guard, const Config& config, const Release& release, const wire::Frame& frame,
           bool local_enable) {
-  if (is_frame(frame, kCommandId, 8, config.node)) return hear_command(guard, frame, local_enable);
+  if (is_frame(frame, kCommandId, 8, config.node)) return hear_command(guard, release, frame, local_enable);
   if (guard.peer == 0 || guard.peer == kByHand) return;
   if (is_cyclic(frame, kCustodyId, 3, guard.peer)) return hear_custody(guard, config.node, release, frame);
   if (is_cyclic(frame, kStateId, 4, guard.peer)) return hear_state(guard, release, frame);
-  if (!is_cyclic(frame, kFaultId, 2, guard.peer) || bits(frame, 32, 2) < 2) return;
-  guard.peer_faulty.start(bits(frame, 34, 1) == 1 ? kFaultTime_ms : std::uint16_t{0});
+  const bool faulty = bits(frame, 32, 2) >= 2 && bits(frame, 34, 1) == 1;
+  if (is_cyclic(frame, kFaultId, 2, guard.peer) && faulty) guard.peer_faulty.start(kFaultTime_ms);
 }
 
 /// Another handoff begins with nothing permitted.
@@ -129,6 +130,12 @@ void judge(ReleaseGuard& guard, const Release& release, std::uint16_t elapsed_ms
 ReleaseGuard guard_after_reset(const NvmRecord& record) {
   ReleaseGuard guard;
   guard.decided_before = record.custody == Custody::Decided;
+  return guard;
+}
+
+ReleaseGuard guard_after_bus_off(const ReleaseGuard& before, const Config& config, const NvmRecord& record) {
+  ReleaseGuard guard = guard_after_reset(record);
+  guard.decided_before = guard.decided_before && permits_decision(before, config, record);
   return guard;
 }
 

@@ -22,6 +22,7 @@ struct Release {
   std::uint16_t pair = 0;
   std::uint16_t peer_required_dn = 0;  ///< F_req of the peer's layout
   bool decided = false;                ///< the record says that the decision is taken
+  std::uint16_t challenge = 0;         ///< what the operator was told to answer with; 0: nothing
 };
 
 struct ReleaseGuard {
@@ -46,6 +47,9 @@ struct ReleaseGuard {
 
 /// What power on finds.
 ReleaseGuard guard_after_reset(const NvmRecord& record);
+
+/// Begins to listen anew. A decision that `before` did not permit does not count as one found at power on.
+ReleaseGuard guard_after_bus_off(const ReleaseGuard& before, const Config& config, const NvmRecord& record);
 
 /// Takes in one step's frames, in order of arrival, and lets time pass.
 void watch(ReleaseGuard& guard, const Config& config, const Release& release,

@@ -63,7 +63,8 @@ Release release_of(const State& state) {
           .token = record.token,
           .pair = record.pair,
           .peer_required_dn = peer == nullptr ? std::uint16_t{0} : peer->f_required_dn,
-          .decided = record.custody == Custody::Decided};
+          .decided = record.custody == Custody::Decided,
+          .challenge = state.timers.challenge.running() ? state.challenge : std::uint16_t{0}};
 }
 
 void listen(State& state, const Inputs& inputs, SendQueue& queue) {
@@ -90,7 +91,8 @@ void speak(State& state, std::uint16_t elapsed_ms, SendQueue& queue) {
 void let_time_pass(State& state, std::uint16_t elapsed_ms) {
   state.host.advance(elapsed_ms);
   state.peers.advance(elapsed_ms);
-  state.timers.state.advance(state.frozen ? std::uint16_t{0} : elapsed_ms);
+  const bool rests = state.frozen || (state.id == StateId::Seating && !motion_permitted(state));
+  state.timers.state.advance(rests ? std::uint16_t{0} : elapsed_ms);
   state.timers.challenge.advance(elapsed_ms);
   advance_lock_out(state, elapsed_ms);
 }
@@ -108,7 +110,7 @@ void mind_bus(State& state, const BusHealth& health, std::uint16_t elapsed_ms) {
   if (!state.bus.recovered()) return;
   state.host = {};
   if (state.layouts.committed) state.peers.follow(state.layouts.layout);
-  state.release_guard = guard_after_reset(state.store.record);
+  state.release_guard = guard_after_bus_off(state.release_guard, state.config, state.store.record);
 }
 
 /// Both channels must want an opening, and a decision to be stored.

@@ -161,7 +161,9 @@ void report_faults(State& state, std::uint16_t elapsed_ms, SendQueue& queue) {
 /// The next of the outcomes that the present fact does not say anyway, if any; they take turns.
 const Outcome* next_outcome(State& state) {
   const NvmRecord& record = state.store.record;
-  const bool said_now = record.custody == Custody::Released || record.custody == Custody::Retained;
+  const bool ended = record.custody == Custody::Released || record.custody == Custody::Retained;
+  const bool said_now =
+      ended && record.outcomes[0].peer == record.peer && record.outcomes[0].token == record.token;
   for (std::size_t i = 0; i < record.outcomes.size(); ++i) {
     const std::uint8_t at = state.outcome_next;
     state.outcome_next = static_cast<std::uint8_t>((at + 1U) % record.outcomes.size());

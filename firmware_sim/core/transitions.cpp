@@ -243,6 +243,13 @@ void enter(State& state, StateId from, Event event) {
   }
 }
 
+/// F_set as high as F_lim_eff lets it be: a receiver that is latched may not let go.
+void press_as_permitted(State& state) {
+  if (state.config.passive) return;
+  const std::int32_t most_dn = force_limit_dn(state) - state.config.uncertainty_dn;
+  state.force_set_dn = static_cast<std::uint16_t>(std::max<std::int32_t>(state.force_set_dn, most_dn));
+}
+
 /// Actions of events that change no state.
 void stay(State& state, Event event) {
   switch (event) {
@@ -262,6 +269,9 @@ void stay(State& state, Event event) {
       return;
     case Event::Opened:
       return record_custody(state, Custody::Released);
+    case Event::HoldLost:
+      if (state.id == StateId::Taken) press_as_permitted(state);
+      return;
     default:
       return;
   }

@@ -282,13 +282,20 @@ TEST(Deciding, manual_release) {
   State state = made(StateId::Hold);
   state.measurement.local_enable = true;
   expect_cases(state, wire::manual_release_ask(), Event::CmdManualAsk,
-               {{refusal(Reason::NoLocalEnable), [](State& s) { s.measurement.local_enable = false; }}});
+               {{refusal(Reason::NoLocalEnable), [](State& s) { s.measurement.local_enable = false; }},
+                {{CommandResult::Busy, Reason::HandoffRunning},
+                 [](State& s) { s.store.record.custody = Custody::Retained; }}});
   state.challenge = 99;
   state.timers.challenge.start(1);
   expect_cases(state, wire::manual_release_answer(99), Event::CmdManualRelease,
                {{refusal(Reason::NoLocalEnable), [](State& s) { s.measurement.local_enable = false; }},
                 {refusal(Reason::ChallengeWrong), [](State& s) { s.timers.challenge.stop(); }},
+                {{CommandResult::Busy, Reason::HandoffRunning},
+                 [](State& s) { s.store.record.custody = Custody::Retained; }},
                 {refusal(Reason::ChallengeWrong), [](State& s) { s.challenge = 98; }}});
+  state.store.record.custody = Custody::Retained;
+  state.announced.fact = wire::Fact::Retain;
+  EXPECT_EQ(decide(state, wire::manual_release_answer(99)).event, Event::CmdManualRelease);
   for (const std::uint8_t step : {std::uint8_t{0}, std::uint8_t{3}}) {
     EXPECT_EQ(decide(state, {.op = Op::ManualRelease, .argument = step}).answer,
               refusal(Reason::BadArgument));

@@ -164,6 +164,12 @@ TEST(NextEvent, while_squeezing_is_a_stable_hold_or_why_there_is_none) {
                            s.measurement.separation_10um = 3021;
                          }},
                         {Event::Slip, [](State& s) { s.measurement.separation_10um = 3021; }},
+                        {Event::HostLost, [](State& s) { s.gate.close(); }},
+                        {Event::HostLost,
+                         [](State& s) {
+                           s.host = {};
+                           hear_host(s, 77, false);
+                         }},
                         {std::nullopt, [](State& s) { s.timers.stable.start(1); }},
                         {std::nullopt, [](State& s) { squeeze_with(s, 519); }},
                         {Event::SqueezeTimeout,
@@ -182,18 +188,18 @@ TEST(NextEvent, while_squeezing_is_a_stable_hold_or_why_there_is_none) {
                          }}});
 }
 
-/// What a part that is held shows, once each.
-void expect_troubles_of_a_hold(const State& state) {
+/// What a part that is held shows, once each; `later`: what follows from it.
+void expect_troubles_of_a_hold(const State& state, Expected later = std::nullopt) {
   expect_events(state, {{std::nullopt, [](State& s) { s.bad_hold_ms = 2; }},
                         {Event::Slip, [](State& s) { s.measurement.separation_10um = 3021; }},
-                        {std::nullopt,
+                        {later,
                          [](State& s) {
                            s.measurement.separation_10um = 3021;
                            s.faults.raise(FaultCode::Slip);
                          }},
                         {std::nullopt, [](State& s) { squeeze_with(s, 1280); }},
                         {Event::OverForce, [](State& s) { squeeze_with(s, 1281); }},
-                        {std::nullopt,
+                        {later,
                          [](State& s) {
                            squeeze_with(s, 1281);
                            s.faults.raise(FaultCode::OverForce);
@@ -244,7 +250,7 @@ TEST(NextEvent, while_latched_is_the_givers_word_or_its_silence_once) {
 
 TEST(NextEvent, while_offered_is_the_receivers_hold_or_that_nobody_answers) {
   const State state = offering(Offered);
-  expect_troubles_of_a_hold(state);
+  expect_troubles_of_a_hold(state, Event::OfferUnanswered);
   expect_events(state, {{std::nullopt, [](State&) {}},
                         {Event::OfferUnanswered, [](State& s) { s.timers.state.stop(); }},
                         {Event::OfferUnanswered, [](State& s) { s.host = {}; }},
@@ -253,11 +259,14 @@ TEST(NextEvent, while_offered_is_the_receivers_hold_or_that_nobody_answers) {
                            s.host = {};
                            s.answer_seen = true;
                          }},
-                        {Event::HoldLost,
+                        {Event::OfferUnanswered, [](State& s) { s.session_epoch = 78; }},
+                        {std::nullopt,
                          [](State& s) {
-                           s.bad_hold_ms = 3;
-                           s.faults.raise(FaultCode::HoldLost);
+                           s.session_epoch = 78;
+                           s.answer_seen = true;
                          }},
+                        {Event::OfferUnanswered, [](State& s) { s.faults.raise(FaultCode::ValveStuck); }},
+                        {std::nullopt, [](State& s) { s.faults.raise(FaultCode::Leak); }},
                         {std::nullopt, [](State& s) { s.timers.peer_good.stop(); }},
                         {Event::PeerHolds,
                          [](State& s) {
@@ -269,6 +278,8 @@ TEST(NextEvent, while_offered_is_the_receivers_hold_or_that_nobody_answers) {
   seen.timers.peer_good.stop();
   seen.release_guard.good_ms = 1;
   expect_events(seen, {{Event::PeerHolds, [](State&) {}},
+                       {Event::Slip, [](State& s) { s.measurement.separation_10um = 3021; }},
+                       {Event::OfferUnanswered, [](State& s) { s.faults.raise(FaultCode::OverForce); }},
                        {std::nullopt, [](State& s) { s.announced.fact = wire::Fact::Sole; }}});
 }
 
@@ -282,6 +293,8 @@ TEST(NextEvent, while_relaxing_is_the_end_of_the_watch_that_both_channels_saw_or
                         {std::nullopt, [](State& s) { s.timers.state.start(1); }},
                         {std::nullopt, [](State& s) { s.release_guard.peer_permits = false; }},
                         {Event::PeerDoubted, [](State& s) { s.peers.advance(70); }},
+                        {Event::PeerDoubted, [](State& s) { s.faults.raise(FaultCode::OverForce); }},
+                        {Event::PeerWatched, [](State& s) { s.faults.raise(FaultCode::Leak); }},
                         {Event::Slip, [](State& s) { s.measurement.separation_10um = 3021; }}});
 }
 

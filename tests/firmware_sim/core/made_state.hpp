@@ -24,7 +24,7 @@ inline void hear_peer(State& state, std::uint8_t node, const wire::Custody& cust
 }
 
 /// The arm in `id`: its layout committed (contact at 30 mm +- 0.5 mm, open at 50 mm, F_light 12 N, F_req 40
-/// N, F_limit 140 N, u 12 N), the jaws at contact, the host alive with a permit.
+/// N, F_limit 140 N, u 12 N), the jaws at contact, the host alive with a permit and a session.
 inline State made(StateId id) {
   State state = power_on(Config{.node = kArm, .kit_id = 0x1234}, NvmImage{});
   state.id = id;
@@ -37,6 +37,8 @@ inline State made(StateId id) {
   state.measurement.separation_10um = 3000;
   state.reference_10um = 3000;
   hear_host(state);
+  state.gate.open(900);
+  state.session_epoch = 77;
   return state;
 }
 

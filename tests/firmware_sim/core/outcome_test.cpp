@@ -166,6 +166,8 @@ TEST_F(Outcomes, are_not_said_before_they_were_true_once) {
   ASSERT_NE(bench.arm().core.announced.fact, wire::Fact::Retain);
   bench.arm_session(kArm);
   EXPECT_NE(bench.result_of(kArm, wire::offer_command(kPedestal)), wire::CommandResult::Ok);
+  bench.arm().jaw.local_enable = true;
+  EXPECT_EQ(bench.result_of(kArm, wire::manual_release_ask()), wire::CommandResult::Busy);
 }
 
 }  // namespace

@@ -97,7 +97,8 @@ class Specified {
     if (whole(frame, 0x100 + kOwn, {wire::MessageType::Command, kOwn})) {
       if (!enable || bits.get(16, 4) != 10) return;
       if (bits.get(20, 4) == 1) asked_until_ms_ = now_ms_ + 3000;
-      if (bits.get(20, 4) == 2) hand_ = hand_ || now_ms_ < asked_until_ms_;
+      const bool answered = release.challenge != 0 && bits.get(52, 12) == release.challenge;
+      if (bits.get(20, 4) == 2 && answered) hand_ = hand_ || now_ms_ < asked_until_ms_;
       return;
     }
     if (peer_ == 0 || peer_ == 15 || bits.get(12, 4) != 1 || bits.get(8, 4) == 15) return;
@@ -116,8 +117,9 @@ class Specified {
                     force_dn >= release.peer_required_dn;
       state_.fresh_until_ms = now_ms_ + 70;
     }
-    if (whole(frame, 0x020U + peer_, {wire::MessageType::Fault, peer_}) && bits.get(32, 2) >= 2)
-      faulty_until_ms_ = bits.get(34, 1) == 1 ? now_ms_ + 320 : 0;
+    const bool active = bits.get(32, 2) >= 2 && bits.get(34, 1) == 1;
+    if (whole(frame, 0x020U + peer_, {wire::MessageType::Fault, peer_}) && active)
+      faulty_until_ms_ = now_ms_ + 320;
   }
 
   std::uint8_t peer_ = 0;
@@ -144,7 +146,8 @@ class Stream {
            .token = 0x1234,
            .pair = 0xBEEF,
            .peer_required_dn = pick<std::uint16_t>({0, 400, 0xFFE}),
-           .decided = chance(30)};
+           .decided = chance(30),
+           .challenge = 99};
   }
 
   void next() {
@@ -178,6 +181,7 @@ class Stream {
     if (chance(30)) to_.peer = pick<std::uint8_t>({2, 3, 15, 0});
     if (chance(30)) to_.token ^= static_cast<std::uint16_t>(1U << random_() % 16);
     if (chance(30)) to_.pair ^= static_cast<std::uint16_t>(1U << random_() % 16);
+    if (chance(10)) to_.challenge = pick<std::uint16_t>({0, 1, 99, 0xFFF});
     to_.decided = chance(30);
   }
 
@@ -188,7 +192,10 @@ class Stream {
     if (kind == 4)
       bits.set(16, 5, 8).set(25, 1, 1).set(32, 12, std::min<unsigned>(to_.peer_required_dn, 0xFFE));
     if (kind == 2) bits.set(16, 16, 0x7030).set(32, 2, random_()).set(34, 2, random_());
-    if (kind == 8) bits.set(16, 4, 10).set(20, 4, pick({1U, 2U, 2U, 3U, 0U, 9U, 10U}));
+    if (kind == 8)
+      bits.set(16, 4, 10)
+          .set(20, 4, pick({1U, 2U, 2U, 3U, 0U, 9U, 10U}))
+          .set(52, 12, chance(80) ? to_.challenge : pick({0U, 98U, 0xFFEU}));
     return bits;
   }
 

@@ -99,6 +99,28 @@ TEST_F(TwoChannels, hold_though_the_state_machine_opens_on_a_permit_of_a_handoff
   EXPECT_FALSE(drops_within(3000));
 }
 
+/// A decision that only one channel took stays one, also when both begin to listen anew.
+TEST_F(TwoChannels, hold_though_the_bus_is_off_for_a_while_after_one_decided_alone) {
+  bench.load_gripper(kArm);
+  mistake(with(StateId::Offered, Event::OfferUnanswered, Cell::Op), true);
+  bench.command(kArm, wire::offer_command(kPedestal));
+  ASSERT_TRUE(bench.reaches(kArm, StateId::Opening, 40'000));
+  bench.arm().bus.off = true;
+  bench.run(20);
+  bench.arm().bus.off = false;
+  EXPECT_FALSE(drops_within(3000));
+  EXPECT_NE(bench.arm().memory.record->custody, Custody::Decided);
+}
+
+TEST_F(TwoChannels, open_on_though_the_bus_is_off_for_a_while_after_both_decided) {
+  let_pedestal_take();
+  ASSERT_TRUE(bench.reaches(kArm, StateId::Opening));
+  bench.arm().bus.off = true;
+  bench.run(2);
+  bench.arm().bus.off = false;
+  EXPECT_TRUE(drops_within(3000));
+}
+
 TEST_F(TwoChannels, open_after_a_restart_in_the_middle_of_a_decided_opening) {
   bench.load_gripper(kArm);
   NvmRecord record = *bench.arm().memory.record;
@@ -284,8 +306,9 @@ TEST(ReleaseGuard, permits_a_release_by_hand_only_as_asked_and_answered_with_the
   NvmRecord record;
   record.custody = Custody::Decided;
   record.peer = wire::kOperatorPeer;
-  const Release by_hand{.peer = wire::kOperatorPeer};
-  const auto permitted = [&](bool enable_at_ask, int wait_ms, bool enable_at_answer, std::uint8_t node) {
+  const auto permitted = [&](bool enable_at_ask, int wait_ms, bool enable_at_answer, std::uint8_t node,
+                             std::uint16_t challenge = 99) {
+    const Release by_hand{.peer = wire::kOperatorPeer, .challenge = challenge};
     ReleaseGuard guard;
     const auto say = [&](const wire::Command& command, bool enable) {
       watch(guard, arm_config(), by_hand, std::vector<wire::Frame>{wire::pack(command, {.node = node})},
@@ -302,6 +325,8 @@ TEST(ReleaseGuard, permits_a_release_by_hand_only_as_asked_and_answered_with_the
   EXPECT_FALSE(permitted(false, 10, true, kArm));
   EXPECT_FALSE(permitted(true, 10, false, kArm));
   EXPECT_FALSE(permitted(true, 10, true, kPedestal));
+  EXPECT_FALSE(permitted(true, 10, true, kArm, 98)) << "another answer than was asked for";
+  EXPECT_FALSE(permitted(true, 10, true, kArm, 0)) << "nothing was asked";
 }
 
 }  // namespace

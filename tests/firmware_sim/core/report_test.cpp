@@ -41,6 +41,7 @@ TEST(Status, of_a_holder_says_each_thing_that_is_so) {
   squeeze_with(state, 800);
   state.announced.fact = wire::Fact::Sole;
   const wire::NodeState wanted{.state = StateId::Hold,
+                               .armed = true,
                                .layout_ok = true,
                                .host_alive = true,
                                .part = true,
@@ -50,7 +51,7 @@ TEST(Status, of_a_holder_says_each_thing_that_is_so) {
                                .separation_50um = 600};
   EXPECT_EQ(status_of(state), wanted);
   const std::vector<std::pair<std::function<void(State&)>, std::function<void(wire::NodeState&)>>> changes = {
-      {[](State& s) { s.gate.open(5); }, [](wire::NodeState& w) { w.armed = true; }},
+      {[](State& s) { s.gate.close(); }, [](wire::NodeState& w) { w.armed = false; }},
       {[](State& s) { s.host = {}; }, [](wire::NodeState& w) { w.host_alive = false; }},
       {[](State& s) { s.timers.stable.start(1); }, [](wire::NodeState& w) { w.hold_stable = false; }},
       {[](State& s) { s.guard.cut = true; }, [](wire::NodeState& w) { w.at_limit = true; }},
@@ -371,7 +372,17 @@ TEST(OutcomesSaid, take_turns_every_100_ms_but_for_the_one_that_is_said_now) {
   EXPECT_EQ(outcomes_of(state, 501), (std::vector{42, 43, 44, 45, 42, 43}));
   for (const Custody custody : {Custody::Released, Custody::Retained}) {
     state.store.record.custody = custody;
-    EXPECT_EQ(outcomes_of(state, 501), (std::vector{43, 44, 45, 43, 44, 45}));
+    for (const bool of_newest : {true, false}) {  // else it was given to the operator, which is no outcome
+      state.store.record.peer = of_newest ? 2 : wire::kOperatorPeer;
+      state.store.record.token = 42;
+      const std::vector turns =
+          of_newest ? std::vector{43, 44, 45, 43, 44, 45} : std::vector{42, 43, 44, 45, 42, 43};
+      EXPECT_EQ(outcomes_of(state, 501), turns);
+    }
+    state.store.record.peer = 2;
+    state.store.record.token = 41;
+    EXPECT_EQ(outcomes_of(state, 301), (std::vector{42, 43, 44, 45}));
+    state.store.record.token = 42;
   }
   state.store.record.outcomes[2].peer = 0;
   EXPECT_EQ(outcomes_of(state, 301), (std::vector{43, 45, 43, 45}));

@@ -17,11 +17,14 @@ struct Silence : testing::Test {
     bench.run(ms);
     bench.after_step = nullptr;
   }
-  void seat(std::uint8_t node) {
+  void start_to_seat(std::uint8_t node) {
     bench.bring_part(node, true);
     bench.at(node).jaw.local_enable = true;
     bench.arm_session(node);
     bench.command(node, wire::plain_command(wire::Op::CloseLight));
+  }
+  void seat(std::uint8_t node) {
+    start_to_seat(node);
     ASSERT_TRUE(bench.reaches(node, StateId::Seated));
   }
   void offer_and_accept() {
@@ -59,15 +62,60 @@ TEST_F(Silence, while_open_stops_the_jaws) {
   EXPECT_EQ(bench.arm().id(), StateId::Loaded);
 }
 
-TEST_F(Silence, while_seating_keeps_the_light_squeeze) {
-  bench.bring_part(kArm, true);
-  bench.arm().jaw.local_enable = true;
-  bench.arm_session(kArm);
-  bench.command(kArm, wire::plain_command(wire::Op::CloseLight));
+TEST_F(Silence, while_seating_at_the_part_keeps_the_light_squeeze) {
+  start_to_seat(kArm);
+  ASSERT_TRUE(bench.run_until(3000, [&] { return bench.arm().jaw.squeeze_dn() > 50; }));
   host_dies_and_nothing_opens(kArm);
   EXPECT_EQ(bench.arm().id(), StateId::Seated);
   EXPECT_GT(bench.arm().jaw.squeeze_dn(), 90);
   EXPECT_LT(bench.arm().jaw.squeeze_dn(), 240);
+}
+
+/// I3: what is not permitted any more does not go on. Air that is shut in may push the jaws on for a while.
+TEST_F(Silence, of_the_permit_ends_an_approach_until_it_is_back) {
+  start_to_seat(kArm);
+  bench.run(20);
+  bench.host_permit = 0;
+  bench.run(60);
+  bench.after_step = [this] { ASSERT_EQ(bench.arm().outputs.valves, Valves{}); };
+  bench.run(4000);
+  bench.after_step = nullptr;
+  ASSERT_EQ(bench.arm().id(), StateId::Seating) << "nor does its time run out";
+  bench.host_permit = 0x3FFF;
+  EXPECT_TRUE(bench.reaches(kArm, StateId::Seated));
+}
+
+TEST_F(Silence, of_the_permit_ends_a_squeeze) {
+  seat(kArm);
+  bench.command(kArm, wire::squeeze_command({1200, 1400}));
+  bench.run(20);
+  ASSERT_EQ(bench.arm().id(), StateId::Squeezing);
+  bench.host_permit = 0;
+  bench.run(60);
+  EXPECT_EQ(bench.arm().id(), StateId::Seated);
+  bench.run(1000);
+  EXPECT_LT(bench.arm().jaw.squeeze_dn(), 240);
+}
+
+/// Another host is no reason to go on with what the first one began.
+TEST_F(Silence, of_the_first_host_ends_a_squeeze_and_an_offer_also_where_a_second_one_is_heard) {
+  for (const bool offers : {false, true}) {
+    bench = Bench();
+    bench.load_all();
+    if (offers) {
+      bench.load_gripper(kArm);
+      ASSERT_EQ(bench.result_of(kArm, wire::offer_command(kPedestal)), wire::CommandResult::Ok);
+    } else {
+      seat(kArm);
+      bench.command(kArm, wire::squeeze_command({1200, 1400}));
+    }
+    bench.run(20);
+    ASSERT_EQ(bench.arm().id(), offers ? StateId::Offered : StateId::Squeezing);
+    bench.epoch ^= 0x55U;
+    bench.run(600);
+    EXPECT_TRUE(bench.arm().core.host.alive());
+    EXPECT_EQ(bench.arm().id(), offers ? StateId::Hold : StateId::Seated);
+  }
 }
 
 TEST_F(Silence, while_squeezing_goes_back_to_light_and_stays_closed) {

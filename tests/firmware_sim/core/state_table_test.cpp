@@ -71,6 +71,8 @@ const std::vector<Row>& specified() {
       {Offered, Event::CmdHold, Hold},
       {Offered, Event::OfferUnanswered, Hold},
       {Offered, Event::HoldLost, Hold},
+      {Offered, Event::OverForce, Hold},
+      {Offered, Event::Slip, Hold},
       {Offered, Event::SensorFault, Hold},
       {Offered, Event::StoreFault, Hold},
       {Relax, Event::PeerWatched, Opening},
@@ -126,9 +128,9 @@ std::uint32_t heeding(Event event) {
     case Event::CmdManualAsk:
       return only({Hold});
     case Event::OverForce:
-      return only({Seating, Seated, Taken, Hold, Offered, Relax, Resqueeze});
+      return only({Seating, Seated, Taken, Hold, Relax, Resqueeze});
     case Event::Slip:
-      return only({Taken, Hold, Offered});
+      return only({Taken, Hold});
     case Event::HoldLost:
       return only({Taken, Hold});
     case Event::Opened:

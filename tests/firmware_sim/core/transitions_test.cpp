@@ -307,6 +307,11 @@ struct Specified {
     if (event == Event::CmdOpenEmpty || event == Event::CmdAbort)
       left["opening wanted"] = !before.config.passive;
     if (event == Event::Opened) record(Custody::Released);
+    if (event == Event::HoldLost && before.id == Taken && !before.config.passive) {
+      const std::int64_t limit_dn = std::min<std::int64_t>(before.layouts.layout.f_limit_dn,
+                                                           before.permit_dn == 0 ? 0xFFFF : before.permit_dn);
+      left["set"] = std::max(left["set"], limit_dn - before.config.uncertainty_dn);
+    }
   }
 
   Seen result() {
