@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 
+#include "protocol/wire/codes.hpp"
 #include "protocol/wire/frame.hpp"
 
 namespace pinjaw::core {
@@ -84,6 +85,7 @@ struct NvmImage {
   std::optional<NvmRecord> record;  ///< nothing: never written
   bool readable = true;             ///< false: both slots fail their checks
   LayoutBlob layout;
+  wire::ResetCause reset = wire::ResetCause::PowerOn;  ///< what ended the last run, as the hardware tells
 };
 
 /// A request to store. Both parts, where given, are stored before `sequence` is reported done.

@@ -154,6 +154,8 @@ void power_on(const Config& config, const NvmImage& image, State& state) {
     restore_layout(state, image.layout);
     to_store(state.store) = record;
   }
+  state.reset = image.reset;
+  if (state.reset == wire::ResetCause::Watchdog) raise(state, wire::FaultCode::Watchdog);
   state.timers.force.start(wire::kForceOffset_ms + 1);  // the first STATE goes out after 1 ms
 }
 

@@ -122,6 +122,7 @@ wire::Identity identity_of(const State& state) {
   identity.hardware = 1;
   identity.minor = 1;
   identity.serial = state.config.serial;
+  identity.reset = state.reset;
   identity.boots = state.store.record.boot_count;
   identity.memory = state.store.failed ? wire::MemoryStatus::Lost : wire::MemoryStatus::Good;
   return identity;

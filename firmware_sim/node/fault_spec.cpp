@@ -21,6 +21,7 @@ struct Known {
   std::string_view unit{};  ///< empty: it takes no value
   double least = 0;
   double most = 0;
+  Fault::Of of = Fault::Of::Plant;
 };
 
 constexpr double kLeakReference_Pa = 6e5;  // absolute: a leak is told at 5 bar gauge
@@ -105,7 +106,8 @@ constexpr std::array kKnown = {
           -kMost_mm, kMost_mm},
     Known{"position_stuck", [](double, Faults& f) { f.position.stuck = true; }},
     Known{"position_lost", [](double, Faults& f) { f.position.lost = true; }},
-    Known{"nvm_failed", nullptr},
+    Known{.name = "nvm_failed", .add = nullptr, .of = Fault::Of::Memory},
+    Known{.name = "hang", .add = nullptr, .of = Fault::Of::Processor},
 };
 
 tl::unexpected<std::string> wrong(std::string why) {
@@ -139,7 +141,7 @@ tl::expected<Fault, std::string> parse_fault(std::string_view text) {
     const bool has_value = equals != std::string_view::npos;
     if (known.unit.empty()) {
       if (has_value) return wrong(name + " takes no value");
-      return Fault{.add = known.add};
+      return Fault{.of = known.of, .add = known.add};
     }
     const auto value = has_value ? number(text.substr(equals + 1)) : std::nullopt;
     if (!value || *value < known.least || *value > known.most) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <tl/expected.hpp>
@@ -8,10 +9,16 @@
 
 namespace pinjaw::node {
 
-/// One fault of a node's hardware.
+/// One fault of a node.
 struct Fault {
+  enum class Of : std::uint8_t {
+    Plant,
+    Memory,     ///< the permanent one: from now on nothing is stored
+    Processor,  ///< it hangs, once, until the watchdog resets it
+  };
   using Add = void (*)(double value, plant::Faults& faults);
-  Add add = nullptr;  ///< to those a plant has; nothing: it is the permanent memory that fails
+  Of of = Of::Plant;
+  Add add = nullptr;  ///< to those a plant has
   double value = 0;   ///< where the fault's name takes one, in the unit that `known_faults` tells
 };
 

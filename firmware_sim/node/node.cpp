@@ -12,6 +12,7 @@ constexpr int kPlantSteps = 50;     // of plant::kStep_s in 1 ms
 constexpr int kFramesPerStep = 64;  // chosen: a controller's receive buffer; 1 ms of 500 kbit/s brings four
 constexpr double k10um_per_m = 1e5;
 constexpr double kMoving_m_s = 0.01;
+constexpr unsigned kWatchdog_ms = 50;  // docs/reliability.md 2.7, I5
 
 plant::Spool plant_spool(core::Spool spool) {
   switch (spool) {
@@ -52,7 +53,8 @@ Node::Node(const Figures& figures, std::uint64_t seed, bus::Bus& bus)
 bus::Expected<void> Node::step(const Surroundings& surroundings, unsigned elapsed_ms) {
   bus::Expected<void> taken = take_frames();
   bus::Expected<void> sent;
-  if (powered_) sent = run_firmware(surroundings, elapsed_ms);
+  if (powered_ && !hangs_) sent = run_firmware(surroundings, elapsed_ms);
+  mind_watchdog(elapsed_ms);
   memory_.advance_ms(powered_ ? elapsed_ms : 0);
   if (!figures_.passive) run_plant(surroundings, elapsed_ms);
   return taken ? sent : taken;
@@ -61,6 +63,7 @@ bus::Expected<void> Node::step(const Surroundings& surroundings, unsigned elapse
 void Node::set_power(bool on) {
   if (on == powered_) return;
   powered_ = on;
+  hangs_ = false;
   valves_ = {};
   if (on) {
     firmware_ = core::power_on(config_, memory_.image());
@@ -70,8 +73,26 @@ void Node::set_power(bool on) {
 }
 
 void Node::apply(const Fault& fault) {
-  if (fault.add == nullptr) return memory_.fail();
-  fault.add(fault.value, faults_);
+  switch (fault.of) {
+    case Fault::Of::Plant:
+      return fault.add(fault.value, faults_);
+    case Fault::Of::Memory:
+      return memory_.fail();
+    case Fault::Of::Processor:
+      hangs_ = true;
+  }
+}
+
+/// Resets a processor that hangs: the valves fall to rest, and it starts from its memory.
+void Node::mind_watchdog(unsigned elapsed_ms) {
+  silent_ms_ = powered_ && hangs_ ? silent_ms_ + elapsed_ms : 0;
+  if (silent_ms_ < kWatchdog_ms) return;
+  hangs_ = false;
+  valves_ = {};
+  memory_.cut_power();
+  core::NvmImage found = memory_.image();
+  found.reset = wire::ResetCause::Watchdog;
+  firmware_ = core::power_on(config_, found);
 }
 
 bool Node::moves() const {

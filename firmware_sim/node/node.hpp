@@ -89,6 +89,7 @@ class Node {
   bus::Expected<void> take_frames();
   [[nodiscard]] core::Sensors read_sensors(const Surroundings& surroundings);
   bus::Expected<void> run_firmware(const Surroundings& surroundings, unsigned elapsed_ms);
+  void mind_watchdog(unsigned elapsed_ms);
   void run_plant(const Surroundings& surroundings, unsigned elapsed_ms);
   void run_plant_for_1_ms(const plant::Inputs& inputs);
 
@@ -98,6 +99,8 @@ class Node {
   bus::Bus* bus_;
   ExternalBoard* board_ = nullptr;
   bool powered_ = true;
+  bool hangs_ = false;      ///< the processor does nothing: the valves stay as they were told
+  unsigned silent_ms_ = 0;  ///< since it last served its watchdog
   bool coasts_ = true;
   Nvm memory_;  // before the firmware, which reads it
   core::State firmware_;

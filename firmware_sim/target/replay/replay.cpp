@@ -174,6 +174,7 @@ void read_memory(core::NvmImage& image) {
   image = {};
   if (take_byte() != 0) take(trace::bytes_of(image.record.emplace()));
   image.readable = take_byte() != 0;
+  image.reset = static_cast<wire::ResetCause>(take_byte());
   take(trace::bytes_of(image.layout.size));
   take(std::span(image.layout.bytes).first(image.layout.size));
 }

@@ -114,6 +114,7 @@ void Recorder::power_on(const Config& config, const NvmImage& image, const State
   out.byte(image.record ? 1 : 0);
   if (image.record) out.raw(*image.record);
   out.byte(image.readable ? 1 : 0);
+  out.byte(static_cast<std::uint8_t>(image.reset));
   out.raw(image.layout.size);
   into.put(std::span(image.layout.bytes).first(image.layout.size));
   at_[key] = lanes_.size() - 1;

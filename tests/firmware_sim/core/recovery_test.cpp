@@ -92,6 +92,21 @@ TEST_F(Recovery, with_unreadable_memory_holds_and_says_so) {
   EXPECT_EQ(bench.arm().outputs.valves, Valves{});
 }
 
+/// I5: what a processor that hung has done is not trusted further than the hold.
+TEST_F(Recovery, by_the_watchdog_holds_and_gives_nothing_away_until_the_fault_is_cleared) {
+  bench.load_gripper(kArm);
+  bench.arm().power_off();
+  bench.arm().memory.reset = wire::ResetCause::Watchdog;
+  bench.arm().power_on_again();
+  ASSERT_TRUE(bench.reaches(kArm, StateId::Hold));
+  EXPECT_TRUE(bench.arm().core.faults.active(wire::FaultCode::Watchdog));
+  bench.arm_session(kArm);
+  EXPECT_EQ(bench.result_of(kArm, wire::offer_command(kPedestal)), wire::CommandResult::Refused);
+  EXPECT_EQ(bench.result_of(kArm, wire::plain_command(wire::Op::ClearFault)), wire::CommandResult::Ok);
+  bench.arm_session(kArm);
+  EXPECT_EQ(bench.result_of(kArm, wire::offer_command(kPedestal)), wire::CommandResult::Ok);
+}
+
 TEST_F(Recovery, with_a_part_felt_and_no_record_holds_until_the_operator_decides) {
   bench.arm().jaw.separation_10um = 3000;
   bench.bring_part(kArm, true);

@@ -222,7 +222,11 @@ TEST(IdentitySaid, in_five_pages_20_ms_apart_and_then_one_a_second) {
   State failed = made(StateId::Loaded);
   failed.store.failed = true;
   failed.identity_page = 4;
-  EXPECT_EQ(said<wire::Identity>(failed)[0].memory, wire::MemoryStatus::Lost);
+  failed.reset = wire::ResetCause::Watchdog;
+  const auto boot_page = said<wire::Identity>(failed);
+  ASSERT_EQ(boot_page.size(), 1U);
+  EXPECT_EQ(boot_page[0].reset, wire::ResetCause::Watchdog);
+  EXPECT_EQ(boot_page[0].memory, wire::MemoryStatus::Lost);
 }
 
 TEST(LayoutSaid, by_its_checksum_every_half_second) {

@@ -97,6 +97,7 @@ const std::vector<std::string> kFaults = {
     "position_drift=-1",
     "position_stuck",
     "position_lost",
+    "hang",
 };
 
 /// Faults that a sensor shows at once, and so must be known within I5's time.

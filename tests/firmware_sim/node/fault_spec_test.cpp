@@ -40,7 +40,8 @@ TEST(FaultSpec, no_two_names_do_the_same) {
                     faults.spool_sticks_at ? static_cast<int>(*faults.spool_sticks_at) : -1,
                     static_cast<int>(faults.relax), static_cast<int>(faults.vent),
                     static_cast<int>(faults.cut), static_cast<int>(faults.regulator));
-    print += fmt::format(" {} {}", faults.supply_lost, static_cast<int>(faults.soft_start));
+    print += fmt::format(" {} {} {}", faults.supply_lost, static_cast<int>(faults.soft_start),
+                         static_cast<int>(fault.of));
     for (const plant::SensorFault* sensor : {&faults.pressure[0], &faults.pressure[1], &faults.pressure[2],
                                              &faults.pressure[3], &faults.position}) {
       print += fmt::format(" {} {} {} {}", sensor->offset, sensor->drift_per_s, sensor->stuck, sensor->lost);

@@ -1,4 +1,4 @@
-// Promises: I7.
+// Promises: I5, I7.
 #include <gtest/gtest.h>
 
 #include "tests/firmware_sim/support/test_cell.hpp"
@@ -36,6 +36,41 @@ TEST(Power, after_a_cut_the_controller_comes_up_holding) {
   EXPECT_FALSE(cell.truth().dropped);
   EXPECT_EQ(cell.truth().min_holders, 1);
   EXPECT_EQ(cell.state_of(1), wire::State::Hold);
+}
+
+/// I5: outputs stay as they were told for 50 ms at most, then the hardware holds.
+TEST(Watchdog, resets_a_processor_that_hangs_and_it_comes_up_holding) {
+  const auto owner = holding_cell();
+  TestCell& cell = *owner;
+  const Node& node = *cell.world().find(1);
+  const std::uint32_t steps_before = node.firmware().counters.steps;
+  cell.ask(bench::Break{1, "hang"});
+  cell.run_ms(49);
+  EXPECT_EQ(node.firmware().counters.steps, steps_before) << "it does nothing";
+  cell.run_ms(1);
+  EXPECT_EQ(node.firmware().id, wire::State::Boot) << "reset";
+  EXPECT_EQ(node.told_valves(), core::Valves{});
+  cell.run_ms(2000);
+  EXPECT_EQ(cell.state_of(1), wire::State::Hold);
+  EXPECT_TRUE(node.firmware().faults.active(wire::FaultCode::Watchdog));
+  EXPECT_FALSE(cell.truth().dropped);
+  EXPECT_EQ(cell.truth().min_holders, 1);
+}
+
+TEST(Watchdog, stops_jaws_that_a_hung_processor_left_closing) {
+  TestCell cell({{.node = 1, .separation_mm = 30, .needed_n = 60}});
+  ASSERT_TRUE(cell.commission());
+  cell.ask(bench::Place{1, {{1, 30, 60}}});
+  cell.ask(bench::Enable{1, true});
+  cell.run_ms(50);
+  cell.command(1, wire::plain_command(wire::Op::CloseLight));
+  const Node& node = *cell.world().find(1);
+  ASSERT_TRUE(cell.run_until([&] { return node.told_valves().spool == core::Spool::Close; }, 1000));
+  cell.ask(bench::Break{1, "hang"});
+  cell.run_ms(49);
+  EXPECT_EQ(node.told_valves().spool, core::Spool::Close);
+  cell.run_ms(1);
+  EXPECT_EQ(node.told_valves(), core::Valves{});
 }
 
 TEST(Power, without_power_it_neither_hears_nor_says_anything) {
