@@ -14,6 +14,7 @@ struct FaultHelp {
   const char* meaning = "";
   const char* cause = "";
   const char* remedy = "";
+  bool simulated = true;  ///< else for other controllers: the simulated one does not report it
 };
 
 /// One entry for each fault code but None, ascending.

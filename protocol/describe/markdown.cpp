@@ -2,7 +2,9 @@
 #include <cstdio>
 
 #include "protocol/describe/describe.hpp"
+#include "protocol/describe/fault_help.hpp"
 #include "protocol/describe/physical.hpp"
+#include "protocol/wire/names.hpp"
 #include "protocol/wire/services.hpp"
 #include "protocol/wire/table.hpp"
 
@@ -59,6 +61,15 @@ std::string values(const char* title, std::span<const wire::ValueName> names, in
   return text + '\n';
 }
 
+/// A sentence on the faults that the simulated controller does not report.
+std::string not_simulated() {
+  std::string names;
+  for (const FaultHelp& help : fault_helps()) {
+    if (!help.simulated) names += (names.empty() ? "" : ", ") + std::string(wire::to_string(help.code));
+  }
+  return "For other controllers, not reported by the simulated one: " + names + ".\n\n";
+}
+
 }  // namespace
 
 std::string to_markdown() {
@@ -70,7 +81,7 @@ std::string to_markdown() {
   text += values("Operations", wire::kOpNames, 0);
   text += values("Results", wire::kResultNames, 0);
   text += values("Reasons", wire::kReasonNames, 0);
-  text += values("Fault codes", wire::kFaultNames, 4);
+  text += values("Fault codes", wire::kFaultNames, 4) + not_simulated();
   text += values("Severities", wire::kSeverityNames, 0);
   text += values("Transfer statuses", wire::kTransferStatusNames, 0);
   text.pop_back();

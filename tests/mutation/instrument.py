@@ -8,6 +8,7 @@ OUT/mutants.json (what each id changes). Mutations are insertions only: `a < b` 
 `(mutant(7)?(a <= b):mutant(8)?(a >= b):(a < b))`, so that they nest and lines stay where they are.
 """
 import json
+import os
 import re
 import sys
 from pathlib import Path
@@ -57,7 +58,7 @@ class File:
             "original": flat(before + self.text[start:end].decode() + after), "mutated": flat(before + replacement + after)})
         return len(self.book) - 1
 
-    def wrap(self, start, end, choices, close=None, keep="(%s)"):
+    def wrap(self, start, end, choices, keep="(%s)"):
         """`choices`: (id, text) that take the place of [start, end)."""
         self.wraps += 1
         head = "".join(f"{MUTANT % i}?({text}) : " for i, text in choices)
@@ -233,11 +234,10 @@ class Walk:
             is_statement = node.kind in (K.COMPOUND_STMT, K.CASE_STMT, K.DEFAULT_STMT) or (
                 node.kind in (K.FOR_STMT, K.WHILE_STMT, K.CXX_FOR_RANGE_STMT) and i + 1 == len(kids))
             if is_statement:
-                here = node.kind == K.COMPOUND_STMT and i + 1 < len(kids)
-                self.statement(child, function, later, here, kids[i + 1] if i + 1 < len(kids) else None, result)
+                self.statement(child, function, later, kids[i + 1] if i + 1 < len(kids) else None, result)
             self.visit(child, function, later, result)
 
-    def statement(self, node, function, followed, followed_here, following, result):
+    def statement(self, node, function, followed, following, result):
         """Books the deletion of a statement, where the rest still compiles and differs."""
         kind = node.kind
         if kind == K.RETURN_STMT:
@@ -266,7 +266,7 @@ class Walk:
                     self.visit(child, function, followed, result)
             else:
                 if not decided_by_compiler:
-                    self.statement(child, function, followed, False, None, result)
+                    self.statement(child, function, followed, None, result)
                 self.visit(child, function, followed, result)
         if not decided_by_compiler:
             self.condition(left, right, function)
@@ -290,19 +290,15 @@ class Walk:
     def switch(self, node, function):
         """A label that is overlooked: its value goes where no label is."""
         left, right = self.parentheses(node.extent.start.offset)
-        cases = []
+        labels = []
         for statement in node.walk_preorder():
             if statement.kind == K.CASE_STMT:
-                label = self.file.slice(next(statement.get_children()))
-                stop = statement.extent.end.offset
-                behind = self.file.text[statement.extent.start.offset:stop].decode()
-                cases.append((statement, label, behind))
-        text = self.file.text[left:right].decode()
+                labels.append(next(statement.get_children()))
         body = ""
-        for statement, label, _ in cases:
-            at = next(statement.get_children()).extent
+        for label in labels:
+            at = label.extent
             mutant = self.file.note(at.start.offset, at.end.offset, "/* nothing */", "overlook case", function)
-            body += f"if({MUTANT % mutant}&&v==({label}))return static_cast<decltype(v)>(0xEE);"
+            body += f"if({MUTANT % mutant}&&v==({self.file.slice(label)}))return static_cast<decltype(v)>(0xEE);"
         self.file.inserts.append((left, 0, -right, 0, "[](auto v){" + body + "return v;}("))
         self.file.inserts.append((right, -1, -left, 0, ")"))
 
@@ -435,7 +431,6 @@ class Walk:
 
 def main():
     root, out = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
-    import os
     os.chdir(root)
     cache = {}
 

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <cstdlib>
 #include <thread>
 #include <utility>
 
@@ -55,6 +56,10 @@ int Process::wait(std::chrono::seconds patience) {
   }
   child_ = 0;
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+bool shell(const std::string& command) {
+  return std::system(("PATH=$PATH:/usr/sbin:/sbin; " + command).c_str()) == 0;
 }
 
 }  // namespace pinjaw::test

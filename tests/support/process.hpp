@@ -26,4 +26,7 @@ class Process {
   pid_t child_;
 };
 
+/// Whether a shell, which finds what only root of the machine may do, did it.
+bool shell(const std::string& command);
+
 }  // namespace pinjaw::test

@@ -18,12 +18,14 @@
 namespace pinjaw::board {
 namespace {
 
+// Addresses and interrupts: QEMU, hw/arm/virt.c, base_memmap and a15irqmap. Those count from the GIC's first
+// shared interrupt, 32; the virtual timer is the processor's private interrupt 27 (Cortex-A15 TRM).
 constexpr std::uintptr_t kGicDistributor = 0x08000000;
 constexpr std::uintptr_t kGicProcessor = 0x08010000;
 constexpr std::uintptr_t kUart = 0x09000000;
 constexpr std::uintptr_t kPciPorts = 0x3EFF0000;
 constexpr std::uintptr_t kPciConfiguration = 0x3F000000;
-constexpr std::uint32_t kKvaserPciCan = 0x840610E8;
+constexpr std::uint32_t kKvaserPciCan = 0x840610E8;  // device and vendor: QEMU, hw/net/can/can_kvaser_pci.c
 constexpr std::uint32_t kTick_ms = 1;
 constexpr std::uint32_t kTimerInterrupt = 27;  // virtual timer
 constexpr std::uint32_t kUartInterrupt = 33;
@@ -54,19 +56,19 @@ void wake_at(std::uint64_t ticks) {
   asm volatile("mcr p15, 0, %0, c14, c3, 1" : : "r"(1));
 }
 
-/// Of a device, to this processor.
+/// Of a device, to this processor: GICD_ISENABLER and GICD_ITARGETSR (GICv2, Arm IHI 0048B, table 4-1).
 void enable(std::uint32_t interrupt) {
   word(kGicDistributor + 0x100 + interrupt / 32 * 4) = 1U << interrupt % 32;
   *reinterpret_cast<volatile std::uint8_t*>(kGicDistributor + 0x800 + interrupt) = 1;
 }
 
 void start_interrupts() {
-  word(kGicDistributor) = 1;
+  word(kGicDistributor) = 1;  // GICD_CTLR
   enable(kTimerInterrupt);
   enable(kUartInterrupt);
   for (std::uint32_t i = 0; i < 4; ++i) enable(kFirstPciInterrupt + i);
-  word(kGicProcessor + 4) = 0xFF;  // any priority
-  word(kGicProcessor) = 1;
+  word(kGicProcessor + 4) = 0xFF;  // GICC_PMR (table 4-2): any priority
+  word(kGicProcessor) = 1;         // GICC_CTLR
 }
 
 template <class T, std::size_t kSize>
@@ -93,7 +95,9 @@ class Ring {
 
 constexpr virt::Sja1000 kCan(kPciPorts + 0x1100);
 
-/// Finds the card, gives it addresses and lets its interrupt through.
+/// Finds the card, gives it addresses and lets its interrupt through. Its three address ranges and the
+/// bridge's register INTCSR (0x38, bit 13) are those of QEMU's can_kvaser_pci.c; the addresses given are
+/// chosen.
 bool start_card() {
   for (std::uintptr_t device = 0; device < 32; ++device) {
     const std::uintptr_t registers = kPciConfiguration + (device << 15);
@@ -115,6 +119,7 @@ struct Board {
   core::Sensors sensors;
   core::NvmStatus memory;
   std::uint32_t overruns = 0;
+  std::uint32_t not_sent = 0;    ///< frames without room in `to_send`, for a debugger
   std::uint64_t tick = 0;        ///< when the last one was due
   std::uint64_t tick_ticks = 1;  ///< of kTick_ms
   link::PacketReader<link::kSensorsBytes> packets{link::kSensorsMark};
@@ -139,7 +144,7 @@ void serve_can() {
 }
 
 void serve_link() {
-  while ((word(kUart + 0x18) & 0x10U) == 0) {  // the receiver holds something
+  while ((word(kUart + 0x18) & 0x10U) == 0) {  // UARTFR without RXFE: the receiver holds something
     const auto packet = the_board.packets.take(static_cast<std::uint8_t>(word(kUart)));
     if (!packet) continue;
     the_board.sensors = link::sensors_of(*packet);
@@ -167,9 +172,10 @@ void start() {
   the_board.config.kit_id = PINJAW_BOARD_KIT;
   the_board.tick_ticks = std::uint64_t{ticks_per_second()} * kTick_ms / 1000;
   start_interrupts();
-  word(kUart + 0x2C) = 0x70;   // eight bits, FIFO
-  word(kUart + 0x30) = 0x301;  // on
-  word(kUart + 0x38) = 0x10;   // an interrupt for what comes: its FIFO holds half a packet
+  // PL011 (Arm DDI 0183, table 3-1)
+  word(kUart + 0x2C) = 0x70;   // UARTLCR_H: eight bits, FIFO
+  word(kUart + 0x30) = 0x301;  // UARTCR: on
+  word(kUart + 0x38) = 0x10;   // UARTIMSC: an interrupt for what comes: its FIFO holds half a packet
   while (!start_card()) {      // without its card a board has nothing to say
   }
   kCan.start();
@@ -216,7 +222,7 @@ void set_valves(const core::Valves& valves) {
   the_board.answered = true;
   the_board.told = valves;
   for (const std::uint8_t byte : link::pack(valves, the_board.reading)) {
-    while ((word(kUart + 0x18) & 0x20U) != 0) {  // the sender is full
+    while ((word(kUart + 0x18) & 0x20U) != 0) {  // UARTFR with TXFF: the sender is full
     }
     word(kUart) = byte;
   }
@@ -230,7 +236,7 @@ core::NvmStatus memory_status() {
 }
 
 void send(const wire::Frame& frame) {
-  the_board.to_send.push(frame);
+  if (!the_board.to_send.push(frame)) ++the_board.not_sent;
   serve_can();
 }
 

@@ -20,7 +20,8 @@ nlohmann::ordered_json json_of(const describe::FaultHelp& help) {
           {"code", fmt::format("0x{:04x}", static_cast<unsigned>(help.code))},
           {"meaning", help.meaning},
           {"cause", help.cause},
-          {"remedy", help.remedy}};
+          {"remedy", help.remedy},
+          {"simulated", help.simulated}};
 }
 
 void list_all(const Context& context) {
@@ -48,9 +49,10 @@ void run_explain(Context& context, const std::string& code) {
                                                      base::did_you_mean(upper, names)));
   }
   if (context.json) return context.print(json_of(*help).dump(1));
-  context.print(fmt::format("{} (0x{:04x}): {}\n  usual cause: {}\n  what to do:  {}",
-                            wire::to_string(help->code), static_cast<unsigned>(help->code), help->meaning,
-                            help->cause, help->remedy));
+  context.print(
+      fmt::format("{} (0x{:04x}): {}\n  usual cause: {}\n  what to do:  {}{}", wire::to_string(help->code),
+                  static_cast<unsigned>(help->code), help->meaning, help->cause, help->remedy,
+                  help->simulated ? "" : "\n  for other controllers; the simulated one does not report it"));
 }
 
 }  // namespace

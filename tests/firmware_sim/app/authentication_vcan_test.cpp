@@ -2,88 +2,31 @@
 // pinjaw-jaw with a key as a process on a real vcan0, classic and CAN FD, and hosts with and without the key.
 // Times are never asserted.
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <chrono>
-#include <csignal>
 #include <filesystem>
-#include <fstream>
-#include <functional>
-#include <thread>
 
-#include "firmware_sim/app/members.hpp"
 #include "host/config/key_file.hpp"
 #include "host/jaw_client/client.hpp"
-#include "protocol/bench/unix_socket.hpp"
-#include "protocol/socketcan/socket_bus.hpp"
-#include "tests/firmware_sim/support/test_cell.hpp"
-#include "tests/support/places.hpp"
-#include "tests/support/process.hpp"
+#include "tests/firmware_sim/app/live_jaw.hpp"
 
 namespace pinjaw::jaw_app {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using testing::HasSubstr;
 
-/// A controller's file with its kit and key, in a folder of its own.
-class Files {
- public:
-  explicit Files(bool can_fd) {
-    std::string name = (std::filesystem::temp_directory_path() / "pinjaw-auth-XXXXXX").string();
-    folder_ = mkdtemp(name.data());
-    std::ofstream(folder_ / "cell.key") << "00112233445566778899aabbccddeeff\n";
-    std::filesystem::permissions(key(), std::filesystem::perms::owner_read);
-    std::ofstream(folder_ / "kit.yaml")
-        << "kit: test\n"
-           "grid: {spacing_mm: 11.1125, columns: 2, rows: 9, edge_offset_mm: 5.55625}\n"
-           "pins: {radius_mm: 2.38125, lengths_mm: any, min_engagement_mm: 1.0, protrusion_mm: 1.0}\n"
-           "jaws: {separation_mm: [0, 60], plate_gap_mm: 2.0}\n"
-           "actuator: {max_squeeze_n: 140, force_uncertainty_n: 12}\n";
-    std::ofstream(controller()) << "controller: arm\nnode: 1\nkit: kit.yaml\npassive: false\n"
-                                   "hardware: {max_squeeze_n: 140, force_uncertainty_n: 12}\nplant: {}\n"
-                                   "authentication: {key_file: cell.key"
-                                << (can_fd ? ", can_fd: true}\n" : "}\n");
+/// The arm with a key.
+struct KeyedArm {
+  explicit KeyedArm(bool can_fd)
+      : key(files.write("cell.key", "00112233445566778899aabbccddeeff\n")),
+        controller(files.controller(
+            "arm", 1,
+            std::string("authentication: {key_file: cell.key") + (can_fd ? ", can_fd: true}\n" : "}\n"))) {
+    std::filesystem::permissions(key, std::filesystem::perms::owner_read);
   }
-  Files(const Files&) = delete;
-  Files& operator=(const Files&) = delete;
-  ~Files() {
-    std::error_code ignored;
-    std::filesystem::remove_all(folder_, ignored);
-  }
-  [[nodiscard]] std::filesystem::path controller() const { return folder_ / "arm.yaml"; }
-  [[nodiscard]] std::filesystem::path key() const { return folder_ / "cell.key"; }
-  [[nodiscard]] std::string world() const { return (folder_ / "world").string(); }
-
- private:
-  std::filesystem::path folder_;
+  ArmFiles files;
+  std::string key;
+  std::string controller;
 };
-
-/// pinjaw-jaw with these files, ended by SIGTERM; serves its world when it is ready.
-class Simulated {
- public:
-  explicit Simulated(const Files& files)
-      : program_({test::program("pinjaw-jaw"), files.controller(), "--bus", "can:vcan0", "--world",
-                  files.world()}) {}
-  Simulated(const Simulated&) = delete;
-  Simulated& operator=(const Simulated&) = delete;
-  ~Simulated() {
-    program_.signal(SIGTERM);
-    program_.wait();
-  }
-
- private:
-  test::Process program_;
-};
-
-bool served(const std::string& path) {
-  for (int tries = 0; tries < 1000; ++tries) {
-    if (bench::SocketWorld::connect(path)) return true;
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  }
-  return false;
-}
 
 /// A host in real time.
 class LiveClient {
@@ -124,11 +67,12 @@ INSTANTIATE_TEST_SUITE_P(Buses, AuthenticationOnVcan, testing::Bool(),
 
 TEST_P(AuthenticationOnVcan, arms_for_a_host_with_the_key_and_for_no_other) {
   const bool can_fd = GetParam();
-  const Files files(can_fd);
-  const auto members = read_members({files.controller()});
+  const KeyedArm arm(can_fd);
+  const auto members = read_members({arm.controller});
   ASSERT_TRUE(members);
-  const Simulated program(files);
-  ASSERT_TRUE(served(files.world()));
+  const std::string world = arm.files.path("world");
+  const test::Process program(jaw_command(arm.controller, world));
+  ASSERT_TRUE(world_at(world));
   const auto listener = socketcan::SocketBus::open("vcan0", {});
   ASSERT_TRUE(listener) << listener.error().message;
   const auto bus = socketcan::SocketBus::open("vcan0", {});
@@ -136,7 +80,7 @@ TEST_P(AuthenticationOnVcan, arms_for_a_host_with_the_key_and_for_no_other) {
   const wire::Layout layout =
       test::bare_layout({.node = 1, .separation_mm = 30, .needed_n = 60}, members->front().kit_id);
 
-  const auto key = config::read_key_file(files.key());
+  const auto key = config::read_key_file(arm.key);
   ASSERT_TRUE(key) << key.error().message;
   LiveClient friendly(**bus, {.epoch = 0x4321, .key = *key, .can_fd = can_fd, .nonces = 99});
   const jaw_client::Outcome armed = friendly.set_up(layout);

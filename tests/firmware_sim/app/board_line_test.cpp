@@ -10,9 +10,9 @@
 #include <sys/un.h>
 #include <unistd.h>
 
-#include <cstdlib>
 #include <cstring>
-#include <filesystem>
+
+#include "tests/support/folder.hpp"
 
 namespace pinjaw::jaw_app {
 namespace {
@@ -36,25 +36,20 @@ link::SensorsPacket sent_again(const link::SensorsPacket& packet) {
 class BoardLineTest : public testing::Test {
  protected:
   BoardLineTest() {
-    std::string name = (std::filesystem::temp_directory_path() / "pinjaw-line-XXXXXX").string();
-    folder_ = mkdtemp(name.data());
-    path_ = folder_ / "line";
+    const std::string path = folder_.path("line");
     const int listener = ::socket(AF_UNIX, SOCK_STREAM, 0);
     sockaddr_un address{};
     address.sun_family = AF_UNIX;
-    std::memcpy(address.sun_path, path_.c_str(), path_.string().size());
+    std::memcpy(address.sun_path, path.c_str(), path.size());
     EXPECT_EQ(::bind(listener, static_cast<sockaddr*>(static_cast<void*>(&address)), sizeof(address)), 0);
     EXPECT_EQ(::listen(listener, 1), 0);
-    auto line = BoardLine::connect(path_.string());
+    auto line = BoardLine::connect(path);
     board_ = ::accept(listener, nullptr, nullptr);
     close(listener);
     fcntl(board_, F_SETFL, O_NONBLOCK);
     if (line) line_ = std::move(*line);
   }
-  ~BoardLineTest() override {
-    close(board_);
-    std::filesystem::remove_all(folder_);
-  }
+  ~BoardLineTest() override { close(board_); }
 
   void SetUp() override { ASSERT_NE(line_, nullptr); }
 
@@ -74,8 +69,7 @@ class BoardLineTest : public testing::Test {
     answer(valves, link::number_of(to));
   }
 
-  std::filesystem::path folder_;
-  std::filesystem::path path_;
+  const test::Folder folder_;
   int board_ = -1;
   link::PacketReader<link::kSensorsBytes> reader_{link::kSensorsMark};
   std::unique_ptr<BoardLine> line_;

@@ -3,12 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <cstdio>
-#include <fstream>
 #include <string>
 
+#include "tests/firmware_sim/app/arm_files.hpp"
 #include "tests/support/places.hpp"
 
 namespace {
@@ -30,20 +29,6 @@ Ran run(const std::string& arguments) {
   const int status = pclose(pipe);
   ran.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   return ran;
-}
-
-/// A good kit and a controller of node 1 in a folder of their own.
-std::string controller_file() {
-  const std::string folder = testing::TempDir() + "pinjaw-jaw-" + std::to_string(getpid());
-  std::ofstream(folder + "-kit.yaml")
-      << "kit: test\n"
-         "grid: {spacing_mm: 11.1125, columns: 2, rows: 9, edge_offset_mm: 5.55625}\n"
-         "pins: {radius_mm: 2.38125, lengths_mm: any, min_engagement_mm: 1.0, protrusion_mm: 1.0}\n"
-         "jaws: {separation_mm: [0, 60], plate_gap_mm: 2.0}\n"
-         "actuator: {max_squeeze_n: 140}\n";
-  std::ofstream(folder + ".yaml") << "controller: arm\nnode: 1\nkit: " << folder
-                                  << "-kit.yaml\npassive: false\nhardware: {max_squeeze_n: 140}\nplant: {}\n";
-  return folder + ".yaml";
 }
 
 TEST(JawProgram, help_shows_examples) {
@@ -74,13 +59,15 @@ TEST(JawProgram, a_missing_file_exits_3_and_is_named) {
 }
 
 TEST(JawProgram, a_fault_for_a_node_that_is_not_there_exits_2) {
-  const Ran ran = run(controller_file() + " --bus can:vcan0 --fault 5:spool_stuck");
+  const pinjaw::jaw_app::ArmFiles files;
+  const Ran ran = run(files.controller() + " --bus can:vcan0 --fault 5:spool_stuck");
   EXPECT_EQ(ran.code, 2);
   EXPECT_THAT(ran.text, HasSubstr("no controller file is of node 5"));
 }
 
 TEST(JawProgram, a_bus_that_is_not_there_exits_5_with_one_sentence) {
-  const Ran ran = run(controller_file() + " --bus can:nosuchcan9");
+  const pinjaw::jaw_app::ArmFiles files;
+  const Ran ran = run(files.controller() + " --bus can:nosuchcan9");
   EXPECT_EQ(ran.code, 5);
   EXPECT_THAT(ran.text, HasSubstr("pinjaw-jaw: "));
 }

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <csignal>
@@ -15,6 +14,7 @@
 #include "firmware_sim/app/members.hpp"
 #include "protocol/bench/unix_socket.hpp"
 #include "protocol/socketcan/socket_bus.hpp"
+#include "tests/firmware_sim/app/arm_files.hpp"
 #include "tests/firmware_sim/support/test_cell.hpp"
 #include "tests/support/places.hpp"
 #include "tests/support/process.hpp"
@@ -73,20 +73,6 @@ class LiveHost {
   test::ScriptedHost host_;
 };
 
-inline std::string write_controller() {
-  const std::string stem = testing::TempDir() + "pinjaw-vcan-" + std::to_string(getpid());
-  std::ofstream(stem + "-kit.yaml")
-      << "kit: test\n"
-         "grid: {spacing_mm: 11.1125, columns: 2, rows: 9, edge_offset_mm: 5.55625}\n"
-         "pins: {radius_mm: 2.38125, lengths_mm: any, min_engagement_mm: 1.0, protrusion_mm: 1.0}\n"
-         "jaws: {separation_mm: [0, 60], plate_gap_mm: 2.0}\n"
-         "actuator: {max_squeeze_n: 140, force_uncertainty_n: 12}\n";
-  std::ofstream(stem + ".yaml") << "controller: arm\nnode: 1\nkit: " << stem
-                                << "-kit.yaml\npassive: false\n"
-                                   "hardware: {max_squeeze_n: 140, force_uncertainty_n: 12}\nplant: {}\n";
-  return stem + ".yaml";
-}
-
 inline std::unique_ptr<bench::SocketWorld> world_at(const std::string& path) {
   for (int tries = 0; tries < 1000; ++tries) {
     if (auto world = bench::SocketWorld::connect(path)) return std::move(*world);
@@ -101,7 +87,7 @@ class Holding : public testing::Test {
   static constexpr std::uint16_t kEpoch = 0x4321;
 
   void SetUp() override {
-    const std::string controller = write_controller();
+    const std::string controller = files_.controller();
     const auto members = read_members({controller});
     ASSERT_TRUE(members);
     program_.emplace(jaw_command(controller, path_), "", said_);
@@ -148,8 +134,9 @@ class Holding : public testing::Test {
     return text.str();
   }
 
-  const std::string path_ = testing::TempDir() + "pinjaw-world-" + std::to_string(getpid());
-  const std::string said_ = path_ + ".said";
+  const ArmFiles files_;
+  const std::string path_ = files_.path("world");
+  const std::string said_ = files_.path("said");
   std::optional<test::Process> program_;
   std::unique_ptr<bench::SocketWorld> world_;
   std::unique_ptr<socketcan::SocketBus> bus_;

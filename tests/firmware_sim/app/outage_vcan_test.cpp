@@ -8,9 +8,7 @@
 namespace pinjaw::jaw_app {
 namespace {
 
-void shell(const std::string& command) {
-  ASSERT_EQ(std::system(("PATH=$PATH:/usr/sbin:/sbin; " + command).c_str()), 0) << command;
-}
+using test::shell;
 
 class JawInTrouble : public Holding {
  protected:
@@ -41,11 +39,12 @@ class JawInTrouble : public Holding {
 
 TEST_F(JawInTrouble, holds_while_its_interface_is_down_or_gone_and_answers_again_when_it_is_back) {
   for (const std::string away : {"ip link set vcan0 down", "ip link del vcan0"}) {
-    shell(away);
+    ASSERT_TRUE(shell(away));
     EXPECT_TRUE(tells("the CAN interface vcan0"));
     std::this_thread::sleep_for(std::chrono::milliseconds(300));
     expect_held();
-    shell("(ip link show vcan0 || ip link add dev vcan0 type vcan) >/dev/null 2>&1 && ip link set vcan0 up");
+    ASSERT_TRUE(shell(
+        "(ip link show vcan0 || ip link add dev vcan0 type vcan) >/dev/null 2>&1 && ip link set vcan0 up"));
     meet_host();
     EXPECT_TRUE(host_->in(wire::State::Hold)) << said();
     EXPECT_TRUE(host_->command(wire::hold_command()));
@@ -57,12 +56,12 @@ TEST_F(JawInTrouble, holds_while_its_interface_is_down_or_gone_and_answers_again
 }
 
 TEST_F(JawInTrouble, says_nothing_while_bus_off_and_holds) {
-  shell("cansend vcan0 20000040#0000000000000000");
+  ASSERT_TRUE(shell("cansend vcan0 20000040#0000000000000000"));
   EXPECT_TRUE(tells("bus-off 1"));
   frames_of_node(std::chrono::milliseconds(50));  // those that had come before
   EXPECT_EQ(frames_of_node(std::chrono::milliseconds(500)), 0);
   expect_held();
-  shell("cansend vcan0 20000100#0000000000000000");
+  ASSERT_TRUE(shell("cansend vcan0 20000100#0000000000000000"));
   meet_host();
   EXPECT_TRUE(host_->in(wire::State::Hold)) << said();
   EXPECT_TRUE(tells("restarts 1"));
@@ -70,11 +69,11 @@ TEST_F(JawInTrouble, says_nothing_while_bus_off_and_holds) {
 }
 
 TEST_F(JawInTrouble, holds_while_nothing_it_sends_leaves) {
-  shell("tc qdisc add dev vcan0 root plug limit 100");
+  ASSERT_TRUE(shell("tc qdisc add dev vcan0 root plug limit 100"));
   EXPECT_TRUE(tells("full send queue"));
   EXPECT_TRUE(tells("lost sending"));
   expect_held();
-  shell("tc qdisc del dev vcan0 root");
+  ASSERT_TRUE(shell("tc qdisc del dev vcan0 root"));
   meet_host();
   EXPECT_TRUE(host_->in(wire::State::Hold)) << said();
   expect_held();

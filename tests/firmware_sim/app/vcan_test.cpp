@@ -12,13 +12,14 @@ TEST_F(JawOnVcan, keeps_the_part_when_its_host_dies_and_ends_when_told) {
   std::this_thread::sleep_for(std::chrono::seconds(1));  // without its host
   expect_held();
   EXPECT_EQ(end(SIGTERM), 0);
-  EXPECT_NE(access(path_.c_str(), F_OK), 0);
+  EXPECT_FALSE(std::filesystem::exists(path_));
   EXPECT_EQ(said().find("bus of node"), std::string::npos) << said();
 }
 
 TEST(JawProgramOnVcan, an_interrupt_ends_it_cleanly) {
-  const std::string path = testing::TempDir() + "pinjaw-interrupt-" + std::to_string(getpid());
-  test::Process program(jaw_command(write_controller(), path), "", path + ".said");
+  const ArmFiles files;
+  const std::string path = files.path("world");
+  test::Process program(jaw_command(files.controller(), path), "", files.path("said"));
   ASSERT_TRUE(world_at(path));
   program.signal(SIGINT);
   EXPECT_EQ(program.wait(), 0);

@@ -3,11 +3,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cctype>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "protocol/describe/fault_help.hpp"
 #include "protocol/describe/physical.hpp"
+#include "protocol/wire/names.hpp"
 #include "protocol/wire/table.hpp"
 #include "tests/support/places.hpp"
 
@@ -56,6 +60,29 @@ TEST(Json, lists_every_message_and_field) {
     const auto& message = json.at("messages").at(i);
     EXPECT_EQ(message.at("name"), wire::kMessages.at(i).name);
     EXPECT_EQ(message.at("fields").size(), wire::kMessages.at(i).fields.size());
+  }
+}
+
+/// SUPPLY_VOLTAGE as the sources spell it: FaultCode::SupplyVoltage.
+std::string in_source(const std::string& name) {
+  std::string text = "FaultCode::";
+  bool begins = true;
+  for (const char c : name) {
+    if (c != '_') text += begins ? c : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    begins = c == '_';
+  }
+  return text;
+}
+
+TEST(FaultHelps, tell_which_faults_the_simulated_controller_reports) {
+  std::string core;
+  for (const auto& file : std::filesystem::directory_iterator(test::source_dir("firmware_sim/core"))) {
+    if (file.path().extension() == ".cpp")
+      core += content("firmware_sim/core/" + file.path().filename().string());
+  }
+  for (const FaultHelp& help : fault_helps()) {
+    const std::string name = in_source(std::string(wire::to_string(help.code)));
+    EXPECT_EQ(core.find(name) != std::string::npos, help.simulated) << name;
   }
 }
 

@@ -5,7 +5,6 @@
 #include <array>
 #include <chrono>
 #include <cstdio>
-#include <cstdlib>
 #include <fstream>
 #include <memory>
 #include <optional>
@@ -15,6 +14,7 @@
 
 #include "protocol/bus/candump.hpp"
 #include "protocol/socketcan/socket_bus.hpp"
+#include "tests/support/process.hpp"
 
 /// What tests on a real vcan0 share. Times are patience only, never asserted.
 namespace pinjaw::socketcan {
@@ -32,7 +32,7 @@ inline std::unique_ptr<SocketBus> opened(const Settings& settings = {},
 }
 
 inline void run(const std::string& command) {
-  ASSERT_EQ(std::system(("PATH=$PATH:/usr/sbin:/sbin; " + command).c_str()), 0) << command;
+  ASSERT_TRUE(test::shell(command)) << command;
 }
 
 inline std::optional<bus::Received> next(bus::Bus& bus, std::int64_t patience_us = kPatience_us) {
