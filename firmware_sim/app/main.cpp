@@ -48,8 +48,12 @@ const jaw_app::TimedFault* homeless(const std::vector<jaw_app::TimedFault>& faul
 std::string greeting(const std::vector<node::Figures>& members, const jaw_app::Options& options) {
   std::string nodes;
   for (const node::Figures& member : members) nodes += fmt::format(" {}", member.node);
+  std::string apart;
+  for (const auto& [node, interface] : options.interfaces)
+    apart += fmt::format(", node {} on can:{}", node, interface);
   const std::string world = options.world.empty() ? "" : ", world at " + options.world;
-  return fmt::format("ready: node{} on can:{}, seed {}{}", nodes, options.interface, options.seed, world);
+  return fmt::format("ready: node{} on can:{}{}, seed {}{}", nodes, options.interface, apart, options.seed,
+                     world);
 }
 
 ExitCode simulate(const jaw_app::Options& options) {
@@ -63,10 +67,18 @@ ExitCode simulate(const jaw_app::Options& options) {
     return fail(ExitCode::Usage, fmt::format("--fault {}:{}: no controller file is of node {}", fault->node,
                                              fault->text, fault->node));
   }
+  for (const auto& [node, interface] : options.interfaces) {
+    if (std::ranges::find(*members, node, &node::Figures::node) == members->end()) {
+      return fail(ExitCode::Usage, fmt::format("--node-bus {}=can:{}: no controller file is of node {}", node,
+                                               interface, node));
+    }
+  }
   std::vector<std::unique_ptr<bus::Bus>> buses;
   for (const node::Figures& member : *members) {
+    const auto own = options.interfaces.find(member.node);
     auto opened = socketcan::LastingBus::open(
-        options.interface, {.filters = jaw_app::filters_of(member.node, member.can_fd), .patient = true});
+        own == options.interfaces.end() ? options.interface : own->second,
+        {.filters = jaw_app::filters_of(member.node, member.can_fd), .patient = true});
     if (!opened) return fail(ExitCode::Unavailable, opened.error().message);
     buses.push_back(std::move(*opened));
   }

@@ -35,6 +35,15 @@ tl::unexpected<std::string> wrong(std::string why) {
   return tl::unexpected(std::move(why));
 }
 
+/// `NODE=REST` with a node from 1 to 14 and something after it.
+std::optional<std::pair<int, std::string>> of_node(const std::string& text) {
+  const auto equals = text.find('=');
+  const auto node = number<int>(std::string_view(text).substr(0, equals));
+  if (equals == std::string::npos || equals + 1 == text.size() || !node || *node < 1 || *node > 14)
+    return std::nullopt;
+  return std::pair{*node, text.substr(equals + 1)};
+}
+
 Ended usage(const std::string& why) {
   fmt::print(stderr, "pinjaw-jaw: {}\nRun with --help for more.\n", why);
   return {ExitCode::Usage};
@@ -65,12 +74,18 @@ tl::expected<TimedFault, std::string> parse_timed_fault(const std::string& text)
 }
 
 tl::expected<OuterBoard, std::string> parse_board(const std::string& text) {
-  const auto equals = text.find('=');
-  const auto node = number<int>(std::string_view(text).substr(0, equals));
-  if (equals == std::string::npos || equals + 1 == text.size() || !node || *node < 1 || *node > 14) {
-    return wrong(fmt::format("--board '{}': expected NODE=SOCKET with a node from 1 to 14", text));
-  }
-  return OuterBoard{.node = *node, .socket = text.substr(equals + 1)};
+  const auto read = of_node(text);
+  if (!read) return wrong(fmt::format("--board '{}': expected NODE=SOCKET with a node from 1 to 14", text));
+  return OuterBoard{.node = read->first, .socket = read->second};
+}
+
+tl::expected<std::pair<int, std::string>, std::string> parse_node_bus(const std::string& text) {
+  const auto read = of_node(text);
+  if (!read)
+    return wrong(fmt::format("--node-bus '{}': expected NODE=can:IFACE with a node from 1 to 14", text));
+  const auto interface = parse_bus(read->second);
+  if (!interface) return tl::unexpected(interface.error());
+  return std::pair{read->first, *interface};
 }
 
 tl::expected<std::string, std::string> parse_bus(const std::string& text) {
@@ -88,10 +103,13 @@ std::variant<Options, Ended> read_options(int argc, const char* const* argv) {
   std::string bus;
   std::vector<std::string> faults;
   std::vector<std::string> boards;
+  std::vector<std::string> node_buses;
   app.set_version_flag("--version", "pinjaw-jaw " PINJAW_VERSION);
   app.footer(kExamples);
   app.add_option("CONTROLLER", options.controllers, "controller files, one a node")->required();
   app.add_option("--bus", bus, "can:IFACE")->envname("PINJAW_BUS")->required();
+  app.add_option("--node-bus", node_buses, "NODE=can:IFACE: this node is on another interface")
+      ->allow_extra_args(false);
   app.add_option("--world", options.world, "serve the world on this Unix socket, for pinjaw run --world");
   app.add_option("--seed", options.seed, "of noise and of each specimen's errors")
       ->check(CLI::NonNegativeNumber)
@@ -114,6 +132,11 @@ std::variant<Options, Ended> read_options(int argc, const char* const* argv) {
     const auto fault = parse_timed_fault(text);
     if (!fault) return usage(fault.error());
     options.faults.push_back(*fault);
+  }
+  for (const std::string& text : node_buses) {
+    const auto node_bus = parse_node_bus(text);
+    if (!node_bus) return usage(node_bus.error());
+    options.interfaces.insert(*node_bus);
   }
   for (const std::string& text : boards) {
     const auto board = parse_board(text);

@@ -2,8 +2,10 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -36,8 +38,9 @@ struct OuterBoard {
 
 struct Options {
   std::vector<std::filesystem::path> controllers;
-  std::string interface;  ///< of Linux's CAN
-  std::string world;      ///< path of the Unix socket; empty: the world is not served
+  std::string interface;                  ///< of Linux's CAN
+  std::map<int, std::string> interfaces;  ///< of nodes that are on another one
+  std::string world;                      ///< path of the Unix socket; empty: the world is not served
   std::uint64_t seed = 1;
   std::vector<TimedFault> faults;
   std::vector<OuterBoard> boards;
@@ -57,6 +60,9 @@ tl::expected<TimedFault, std::string> parse_timed_fault(const std::string& text)
 
 /// Reads `NODE=SOCKET`, or gives a sentence on what is wrong.
 tl::expected<OuterBoard, std::string> parse_board(const std::string& text);
+
+/// Reads `NODE=can:IFACE`, or gives a sentence on what is wrong.
+tl::expected<std::pair<int, std::string>, std::string> parse_node_bus(const std::string& text);
 
 /// The interface of `can:IFACE`, or a sentence that says which buses there are.
 tl::expected<std::string, std::string> parse_bus(const std::string& text);

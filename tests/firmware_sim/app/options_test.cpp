@@ -15,8 +15,9 @@ std::variant<Options, Ended> read(std::vector<const char*> arguments) {
 }
 
 TEST(Options, reads_everything) {
-  const auto asked = read({"a.yaml", "b.yaml", "--bus", "can:vcan0", "--world", "w.sock", "--seed", "7",
-                           "--fault", "2:leak=0.05", "--fault", "1:supply_lost@20", "--events"});
+  const auto asked =
+      read({"a.yaml", "b.yaml", "--bus", "can:vcan0", "--world", "w.sock", "--seed", "7", "--fault",
+            "2:leak=0.05", "--fault", "1:supply_lost@20", "--events", "--node-bus", "2=can:vcan1"});
   ASSERT_TRUE(std::holds_alternative<Options>(asked));
   const auto& options = std::get<Options>(asked);
   EXPECT_EQ(options.controllers.size(), 2U);
@@ -28,6 +29,7 @@ TEST(Options, reads_everything) {
   EXPECT_EQ(options.faults[0].text, "leak=0.05");
   EXPECT_EQ(options.faults[1].at_s, 20);
   EXPECT_TRUE(options.events);
+  EXPECT_EQ(options.interfaces, (std::map<int, std::string>{{2, "vcan1"}}));
 }
 
 TEST(Options, wrong_usage_ends_with_2) {
@@ -39,6 +41,9 @@ TEST(Options, wrong_usage_ends_with_2) {
                                              {"a.yaml", "--bus", "can:"},
                                              {"a.yaml", "--bus", "can:vcan0", "--fault", "rust"},
                                              {"a.yaml", "--bus", "can:vcan0", "--seed", "-1"},
+                                             {"a.yaml", "--bus", "can:vcan0", "--node-bus", "can:vcan1"},
+                                             {"a.yaml", "--bus", "can:vcan0", "--node-bus", "15=can:vcan1"},
+                                             {"a.yaml", "--bus", "can:vcan0", "--node-bus", "2=vcan1"},
                                              {"a.yaml", "--bus", "can:vcan0", "--frobnicate"}}) {
     const auto asked = read(arguments);
     ASSERT_TRUE(std::holds_alternative<Ended>(asked)) << ::testing::PrintToString(arguments);

@@ -41,9 +41,9 @@ using Disturbances = std::vector<std::unique_ptr<Disturbance>>;
 /// The handoffs begun on a host of their own, and the controllers on `interface`.
 class Hostile : public testing::Test {
  protected:
-  void begin(const std::string& interface = "vcan0") {
-    controllers_ =
-        std::make_unique<Controllers>(std::vector<std::string>{"arm", "pedestal", "pallet"}, interface);
+  void begin(const std::string& interface = "vcan0", const std::vector<std::string>& options = {}) {
+    controllers_ = std::make_unique<Controllers>(std::vector<std::string>{"arm", "pedestal", "pallet"},
+                                                 interface, options);
     host_ = std::make_unique<Process>(
         std::vector<std::string>{
             test::program("pinjaw"), "run", test::source_dir("tests/scenarios/vcan/handoffs.yaml"), "--plan",
@@ -234,6 +234,59 @@ TEST_F(Gateway, that_misaddresses_frames_loses_no_part) {
 TEST_F(Gateway, that_cuts_frames_loses_no_part) {
   endure_rules("7 bytes", "-m SET:L:0.7.0000000000000000");
   endure_rules("no data", "-m SET:L:0.0.0000000000000000");
+}
+
+/// Host and pallet on vcan0, the arm on vcan1, the pedestal on vcan2, and a gateway between each two: what
+/// giver and receiver say to each other passes it.
+class Apart : public Hostile {
+ protected:
+  void SetUp() override {
+    shell("ip link show vcan2 >/dev/null 2>&1 || (ip link add dev vcan2 type vcan && ip link set vcan2 up)");
+    ASSERT_TRUE(joined()) << "can-gw's rules need root of the machine";
+  }
+  void TearDown() override { shell("cangw -F"); }
+
+  static bool join(const std::string& from, const std::string& to, const std::string& how = "") {
+    return shell("cangw -A -s " + from + " -d " + to + " -e " + how);
+  }
+  /// Everything passes, but `how` between the arm and the pedestal.
+  static bool joined(const std::string& how = "") {
+    shell("cangw -F");
+    bool done = join("vcan1", "vcan2", how) && join("vcan2", "vcan1", how);
+    for (const std::string one : {"vcan1", "vcan2"}) done = done && join("vcan0", one) && join(one, "vcan0");
+    return done;
+  }
+
+  /// `finishes`: the rule takes nothing away that a handoff needs.
+  void endure_between(const std::string& under, const std::string& how, bool finishes = false) {
+    SCOPED_TRACE(under);
+    ASSERT_TRUE(joined());
+    begin("vcan0", {"--node-bus", "1=can:vcan1", "--node-bus", "2=can:vcan2"});
+    if (HasFatalFailure()) return;
+    ASSERT_TRUE(joined(how)) << how;
+    play_on(seconds(finishes ? 60 : 15));
+    EXPECT_EQ(exit_code_ == 0, finishes);
+    expect_held(under);
+    ASSERT_TRUE(joined());
+    expect_answers();
+    expect_held(under + ", afterwards");
+    end();
+  }
+};
+
+TEST_F(Apart, giver_and_receiver_whose_words_all_pass_come_to_an_end) {
+  endure_between("between peers: all passes", "", true);
+}
+
+TEST_F(Apart, giver_and_receiver_who_do_not_hear_all_of_each_other_lose_no_part) {
+  endure_between("between peers: no CUSTODY", "-f 040~7F0");
+  endure_between("between peers: no STATE", "-f 060~7F0");
+  endure_between("between peers: nothing", "-f 7FF:7FF");
+}
+
+TEST_F(Apart, giver_and_receiver_whose_words_are_changed_lose_no_part) {
+  endure_between("between peers: one bit", "-m XOR:D:0.0.0000010000000000");
+  endure_between("between peers: neighbour's id", "-m XOR:I:3.0.0000000000000000");
 }
 
 }  // namespace
