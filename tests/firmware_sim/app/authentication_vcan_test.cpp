@@ -50,7 +50,7 @@ class LiveClient {
   jaw_client::Outcome set_up(const wire::Layout& layout) {
     run_until([this] { return client_.alive(1); });
     client_.send_layout(1, layout);
-    if (const auto sent = settled(); !sent.done()) return sent;
+    if (auto sent = settled(); !sent.done()) return sent;
     client_.permit(1, true);
     client_.arm(1, wire::layout_crc_of(layout));
     return settled();

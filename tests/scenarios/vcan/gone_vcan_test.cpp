@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include "tests/scenarios/vcan/programs.hpp"
-#include "tests/support/places.hpp"
 
 namespace pinjaw::scenario {
 namespace {
@@ -23,22 +22,15 @@ INSTANTIATE_TEST_SUITE_P(Ways, InterfaceGone, testing::Values("ip link set vcan0
                          [](const auto& way) { return way.index == 0 ? "down" : "deleted"; });
 
 TEST_P(InterfaceGone, in_a_run_ends_it_with_exit_code_5_and_the_part_stays_held) {
-  Controllers controllers({"arm", "pedestal", "pallet"});
+  Controllers controllers(kThree);
   const std::string told = kOut + "/gone.txt";
-  Process host({test::program("pinjaw"), "run", test::source_dir("tests/scenarios/vcan/handoffs.yaml"),
-                "--plan", kOut + "/cell.json", "--world", controllers.world_path(), "--bus", "can:vcan0"},
-               told);
-  const auto arm_touches = [](const bench::Truth& truth) { return truth.nodes.at(0).touches; };
+  Process host(run_command(handoffs(), controllers), told);
   ASSERT_TRUE(controllers.comes_true(arm_touches, std::chrono::seconds(60)));
   ASSERT_TRUE(shell(GetParam()));
   EXPECT_EQ(host.wait(std::chrono::seconds(60)), 5) << content(told);
   EXPECT_THAT(content(told), HasSubstr("CAN interface vcan0")) << "the step that it ended tells why";
   EXPECT_TRUE(controllers.tells("CAN interface vcan0")) << controllers.said();
-
-  const bench::Truth truth = controllers.truth();
-  EXPECT_FALSE(truth.dropped);
-  EXPECT_FALSE(truth.holders.empty());
-  EXPECT_GE(truth.min_holders.value_or(0), 1);
+  expect_held(controllers.truth());
 
   ASSERT_TRUE(shell(kBack));
   EXPECT_TRUE(controllers.tells("the bus is back")) << controllers.said();

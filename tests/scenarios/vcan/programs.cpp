@@ -1,11 +1,10 @@
 #include "tests/scenarios/vcan/programs.hpp"
 
-#include <unistd.h>
+#include <gtest/gtest.h>
 
 #include <csignal>
-#include <cstdlib>
-#include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <stdexcept>
 #include <thread>
@@ -41,16 +40,19 @@ int pinjaw(std::vector<std::string> arguments, const std::string& output, const 
   return Process(std::move(arguments), output, errors).wait();
 }
 
-bool shell(const std::string& command) {
-  return std::system(("PATH=$PATH:/usr/sbin:/sbin; " + command).c_str()) == 0;
+Candump::Candump(const std::string& file) : program_({"candump", "-L", "vcan0"}, file) {}
+
+void Candump::stop() {
+  program_.signal(SIGINT);
+  program_.wait();
 }
 
 Controllers::Controllers(const std::vector<std::string>& names, const std::string& interface,
                          const std::vector<std::string>& options, std::vector<std::string> under)
-    : path_(new_folder() + "/world"),
-      program_(jaw_command(names, interface, path_, options, std::move(under)), "", path_ + ".said") {
+    : program_(jaw_command(names, interface, world_path(), options, std::move(under)), "",
+               folder_.path("said")) {
   for (int tries = 0; tries < 1000 && !world_; ++tries) {
-    if (auto world = bench::SocketWorld::connect(path_)) world_ = std::move(*world);
+    if (auto world = bench::SocketWorld::connect(world_path())) world_ = std::move(*world);
     std::this_thread::sleep_for(kPoll);
   }
   if (!world_) throw std::runtime_error("pinjaw-jaw does not serve its world: " + said());
@@ -59,12 +61,10 @@ Controllers::Controllers(const std::vector<std::string>& names, const std::strin
 Controllers::~Controllers() {
   program_.signal(SIGTERM);  // so that it removes its socket
   program_.wait();
-  std::error_code ignored;
-  std::filesystem::remove_all(std::filesystem::path(path_).parent_path(), ignored);
 }
 
 std::string Controllers::said() const {
-  return content(path_ + ".said");
+  return content(folder_.path("said"));
 }
 
 bool Controllers::tells(const std::string& text, std::chrono::seconds patience) const {
@@ -93,10 +93,41 @@ bool Controllers::comes_true(const std::function<bool(const bench::Truth&)>& con
   return true;
 }
 
-std::string new_folder() {
-  std::string name = (std::filesystem::temp_directory_path() / "pinjaw-scenario-XXXXXX").string();
-  if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no folder for temporary files");
-  return name;
+std::vector<std::string> run_command(const std::string& sequence, const Controllers& controllers,
+                                     const std::string& report) {
+  std::vector<std::string> command{test::program("pinjaw"), "run",   sequence,    "--plan",
+                                   kOut + "/cell.json",     "--bus", "can:vcan0", "--world",
+                                   controllers.world_path()};
+  if (!report.empty()) command.insert(command.end(), {"--report", report});
+  return command;
+}
+
+std::string handoffs() {
+  return test::source_dir("tests/scenarios/vcan/handoffs.yaml");
+}
+
+nlohmann::json finished_report(const std::string& file, std::size_t steps) {
+  auto report = nlohmann::json::parse(content(file), nullptr, false);
+  if (report.is_discarded()) {
+    ADD_FAILURE() << "no report in " << file;
+    return nullptr;
+  }
+  EXPECT_EQ(report.at("result"), "done");
+  EXPECT_EQ(report.at("steps").size(), steps);
+  EXPECT_EQ(report.at("plant").at("dropped"), false);
+  EXPECT_GE(report.at("plant").at("min_holders"), 1);
+  return report;
+}
+
+bool arm_touches(const bench::Truth& truth) {
+  return truth.nodes.at(0).touches;
+}
+
+void expect_held(const bench::Truth& truth, const std::string& when) {
+  EXPECT_FALSE(truth.dropped) << when;
+  EXPECT_FALSE(truth.holders.empty()) << when;
+  EXPECT_GE(truth.min_holders.value_or(0), 1) << when;
+  EXPECT_EQ(truth.slip_mm, 0) << when;
 }
 
 std::string config(const std::string& name) {

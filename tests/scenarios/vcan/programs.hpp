@@ -3,10 +3,12 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
 #include "protocol/bench/unix_socket.hpp"
+#include "tests/support/folder.hpp"
 #include "tests/support/process.hpp"
 
 /// pinjaw, pinjaw-jaw and candump as processes on vcan0. Times are patience only, never asserted.
@@ -14,14 +16,25 @@ namespace pinjaw::scenario {
 
 inline const std::string kOut = OUT_DIR;  ///< where the plans are that the tests start from
 
+/// The controllers of the cell.
+inline const std::vector<std::string> kThree = {"arm", "pedestal", "pallet"};
+
 using test::Process;
+using test::shell;
 
 /// Runs `pinjaw ARGUMENTS --bus can:vcan0` to its end and gives its exit code.
 int pinjaw(std::vector<std::string> arguments, const std::string& output = {},
            const std::string& errors = {});
 
-/// Whether a shell, as root of the machine, did it.
-bool shell(const std::string& command);
+/// candump -L of vcan0 into a file, until it is stopped.
+class Candump {
+ public:
+  explicit Candump(const std::string& file);
+  void stop();
+
+ private:
+  Process program_;
+};
 
 /// pinjaw-jaw with controllers on an interface, and its world.
 class Controllers {
@@ -34,7 +47,7 @@ class Controllers {
   Controllers& operator=(const Controllers&) = delete;
   ~Controllers();
 
-  [[nodiscard]] const std::string& world_path() const { return path_; }
+  [[nodiscard]] std::string world_path() const { return folder_.path("world"); }
   /// What pinjaw-jaw told on stderr so far.
   [[nodiscard]] std::string said() const;
   /// Whether it comes to tell that. It does once a second.
@@ -47,14 +60,24 @@ class Controllers {
                   std::chrono::seconds patience = std::chrono::seconds(30));
 
  private:
-  std::string path_;
+  test::Folder folder_;
   Process program_;
   std::unique_ptr<bench::SocketWorld> world_;
 };
 
-/// A new folder for temporary files, short, as the path of a socket must be, and nobody else's, also where
-/// process numbers repeat (User-Mode Linux).
-std::string new_folder();
+/// The command that plays a sequence with the cell's plan on vcan0. `report`: the file for its report, if
+/// any.
+std::vector<std::string> run_command(const std::string& sequence, const Controllers& controllers,
+                                     const std::string& report = {});
+/// handoffs.yaml beside this.
+std::string handoffs();
+/// The report of a run that must have come to its end in so many steps, the part held all the time; null
+/// where there is none.
+nlohmann::json finished_report(const std::string& file, std::size_t steps);
+
+bool arm_touches(const bench::Truth& truth);
+/// Somebody holds the part, and somebody always has, without a slip. `when`: said where that fails.
+void expect_held(const bench::Truth& truth, const std::string& when = {});
 
 std::string config(const std::string& name);
 std::string content(const std::string& path);
