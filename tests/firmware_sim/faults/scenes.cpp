@@ -94,7 +94,7 @@ class Stage {
   }
 
   void say_besides(Bench& at, Scene& scene) const {
-    const wire::Command command = right_command(scene, scene.station, told_in(scene));
+    const wire::Command command = right_command(scene, scene.station, told_in(scene), scene.before.size());
     scene.besides[MessageType::GlobalHold].push_back(
         from_node(at, scene.peer, wire::pack(wire::GlobalHold{}, {.node = scene.peer})));
     scene.besides[MessageType::Command].push_back(at.from_host(wire::pack(command, {.node = scene.node})));
@@ -288,16 +288,16 @@ const std::vector<Scene>& passive_scenes() {
   return made;
 }
 
-wire::Command right_command(const Scene& scene, const Station& station, wire::Command command) {
+wire::Command right_command(const Scene& scene, const Station& station, wire::Command command,
+                            std::size_t waiting) {
   const State& core = station.core;
   const bool arms = command.op == wire::Op::Arm;
   if (arms) {
     command = wire::arm_command(core.layouts.crc, core.host.epoch());
     command.sequence = 101;  // of no ARM before
   } else {
-    const std::size_t before = &station == &scene.station ? scene.before.size() : 0;
     command.session = core.gate.session();
-    command.sequence = static_cast<std::uint8_t>(core.gate.next_sequence() + before);
+    command.sequence = static_cast<std::uint8_t>(core.gate.next_sequence() + waiting);
   }
   if (scene.framing == Framing::Plain) return command;
   return wire::sealed(kSceneKey, scene.node, command,

@@ -39,9 +39,10 @@ const std::vector<Scene>& scenes(Framing framing = Framing::Plain);
 /// A passive station in each state of a handoff in which it stays.
 const std::vector<Scene>& passive_scenes();
 
-/// `command` as the host says it to the scene's controller, whose gate is `station`'s: of its session, next
-/// in its sequence, with the MAC that is asked for. ARM is for its layout.
-wire::Command right_command(const Scene& scene, const Station& station, wire::Command command);
+/// `command` as the host says it to the scene's controller, which has become `station`: of its session, the
+/// next in its sequence after `waiting` others, with the MAC that is asked for. ARM is for its layout.
+wire::Command right_command(const Scene& scene, const Station& station, wire::Command command,
+                            std::size_t waiting = 0);
 
 /// A command that a scene's controller obeys; ARM where it has no session.
 wire::Command told_in(const Scene& scene);
