@@ -180,10 +180,13 @@ TEST(Relay, sees_a_part_that_a_jaw_lets_go) {
   EXPECT_TRUE(relay.dropped());
 }
 
-/// By seed; every fifth on CAN FD under a key.
+constexpr int kPlain = 10;
+constexpr int kSealed = 2;  // of whom twice as much CPU is used
+
+/// By seed; the last ones on CAN FD under a key.
 class RandomHandoffs : public testing::TestWithParam<int> {
  protected:
-  static bool is_sealed() { return GetParam() % 5 == 4; }
+  static bool is_sealed() { return GetParam() >= kPlain; }
 };
 
 TEST_P(RandomHandoffs, drop_no_part_and_come_to_an_end) {
@@ -200,7 +203,7 @@ TEST_P(RandomHandoffs, drop_no_part_and_come_to_an_end) {
               relay.time_s());
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, RandomHandoffs, testing::Range(0, 10));
+INSTANTIATE_TEST_SUITE_P(Seeds, RandomHandoffs, testing::Range(0, kPlain + kSealed));
 
 }  // namespace
 }  // namespace pinjaw::core::test
