@@ -225,6 +225,28 @@ void check_said(const Scene& scene, MessageType message, Fault fault, const std:
       << cell.name();
 }
 
+void check_host_lost(const Scene& scene, const DisturbedScene& cell, const std::vector<Moment>& clean,
+                     const std::vector<Moment>& other) {
+  if (scene.state != StateId::Boot) {
+    return expect_silence(cell, clean, other, scene, without_host, wire::kHostFresh_ms);
+  }
+  EXPECT_TRUE(opens_nothing(clean, other)) << cell.name();  // it has never believed in a host
+  EXPECT_EQ(other.back().state, clean.back().state) << cell.name();
+}
+
+void check_peer_lost(const Scene& scene, MessageType message, const DisturbedScene& cell,
+                     const std::vector<Moment>& clean, const std::vector<Moment>& other) {
+  EXPECT_TRUE(opens_nothing(clean, other)) << cell.name();
+  if (scene.state == StateId::Relax) {
+    return expect_silence(cell, clean, other, scene, without_peer, wire::kPeerFresh_ms);
+  }
+  EXPECT_EQ(first_difference(clean, other, kWatched_ms, false), std::nullopt) << cell.name();
+  const bool told = message == MessageType::Custody && waits_for_giver(scene.state);
+  const auto late_ms =
+      static_cast<std::size_t>(cell.last_heard_ms().value_or(0) + wire::kPeerFresh_ms + kMargin_ms);
+  EXPECT_EQ(tells(other, late_ms, wire::FaultCode::PeerLost), told) << cell.name();
+}
+
 void check_unsaid(const Scene& scene, MessageType message, Fault fault, const std::vector<Moment>& clean) {
   DisturbedScene cell(scene, message, fault, false);
   const std::vector<Moment> other = cell.run();
@@ -239,24 +261,9 @@ void check_unsaid(const Scene& scene, MessageType message, Fault fault, const st
     case Effect::Hold:
       return check_hold(scene, cell, clean, other);
     case Effect::HostLost:
-      if (scene.state == StateId::Boot) {  // it has never believed in a host
-        EXPECT_TRUE(opens_nothing(clean, other)) << cell.name();
-        EXPECT_EQ(other.back().state, clean.back().state) << cell.name();
-        return;
-      }
-      return expect_silence(cell, clean, other, scene, without_host, wire::kHostFresh_ms);
-    case Effect::PeerLost: {
-      EXPECT_TRUE(opens_nothing(clean, other)) << cell.name();
-      if (scene.state == StateId::Relax) {
-        return expect_silence(cell, clean, other, scene, without_peer, wire::kPeerFresh_ms);
-      }
-      EXPECT_EQ(first_difference(clean, other, kWatched_ms, false), std::nullopt) << cell.name();
-      const bool told = message == MessageType::Custody && waits_for_giver(scene.state);
-      const auto late_ms =
-          static_cast<std::size_t>(cell.last_heard_ms().value_or(0) + wire::kPeerFresh_ms + kMargin_ms);
-      EXPECT_EQ(tells(other, late_ms, wire::FaultCode::PeerLost), told) << cell.name();
-      return;
-    }
+      return check_host_lost(scene, cell, clean, other);
+    case Effect::PeerLost:
+      return check_peer_lost(scene, message, cell, clean, other);
   }
 }
 
