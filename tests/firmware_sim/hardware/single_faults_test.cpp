@@ -91,7 +91,7 @@ const std::vector<std::string> kFaults = {
 };
 
 /// What a list of faults names, without values.
-std::set<std::string> names_in(std::string list) {
+std::set<std::string> names_in(const std::string& list) {
   std::set<std::string> names;
   std::istringstream each(list);
   for (std::string fault; std::getline(each >> std::ws, fault, ',');)
