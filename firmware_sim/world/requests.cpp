@@ -16,6 +16,14 @@ std::string no_such(int number) {
   return fmt::format("there is no node {}", number);
 }
 
+/// Empty, or why the part does not go between the jaws of `one`, which meet it at `contact_mm`.
+std::string why_no_room(const node::Node& one, double contact_mm) {
+  const double separation_mm = one.truth().separation_mm;
+  if (one.figures().passive || separation_mm >= contact_mm) return {};
+  return fmt::format("the jaws of node {} are closed to {:.2f} mm, the part needs {:.2f} mm", one.number(),
+                     separation_mm, contact_mm);
+}
+
 }  // namespace
 
 bench::Reply World::handle(const bench::Request& request) {
@@ -32,12 +40,8 @@ std::string World::why_not_at_part(const std::vector<int>& nodes) {
   for (const int number : nodes) {
     Station* one = station(number);
     if (one == nullptr) return no_such(number);
-    const bool was_there = one->meets;
-    const bool active = !one->node->figures().passive && one->known_grasp;
-    if (!was_there && active && one->node->truth().separation_mm < one->contact_mm) {
-      return fmt::format("the jaws of node {} are closed to {:.2f} mm, the part needs {:.2f} mm", number,
-                         one->node->truth().separation_mm, one->contact_mm);
-    }
+    if (one->meets || !one->known_grasp) continue;
+    if (std::string why = why_no_room(*one->node, one->contact_mm); !why.empty()) return why;
   }
   return {};
 }
@@ -53,6 +57,12 @@ bench::Reply World::carry_out(const bench::Place& request) {
   if (!told && !on->node->figures().passive) {
     return refused(fmt::format("no grasp of node {} was told", request.on));
   }
+  for (const bench::Grasp& grasp : request.grasps) {
+    if (grasp.node != request.on) continue;
+    if (std::string why = why_no_room(*on->node, grasp.separation_mm); !why.empty()) {
+      return refused(std::move(why));
+    }
+  }
   for (Station& one : stations_) {
     one.known_grasp = false;
     one.meets = false;
@@ -65,7 +75,6 @@ bench::Reply World::carry_out(const bench::Place& request) {
     one.contact_mm = grasp.separation_mm;
     one.needed_n = grasp.needed_n;
   }
-  if (std::string why = why_not_at_part({request.on}); !why.empty()) return refused(std::move(why));
   on->meets = true;
   disturbance_ = "rest";
   removing_ = false;

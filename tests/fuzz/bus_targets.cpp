@@ -210,6 +210,7 @@ std::vector<Target> bus_targets() {
                              {"layout-record", answer_layout, {}, "bus.dict"},
                              {"custody-record", answer_memory, {}, "bus.dict"}};
   for (const Target& target : controller_targets()) all.push_back(target);
+  for (const Target& target : link_targets()) all.push_back(target);
   return all;
 }
 

@@ -5,12 +5,9 @@
 #include <algorithm>
 #include <optional>
 
-#include "firmware_sim/core/custody.hpp"
-#include "firmware_sim/core/force_control.hpp"
-#include "firmware_sim/core/guards.hpp"
-#include "protocol/wire/names.hpp"
 #include "tests/firmware_sim/faults/bad_frames.hpp"
 #include "tests/fuzz/byte_source.hpp"
+#include "tests/fuzz/invariants.hpp"
 #include "tests/fuzz/targets.hpp"
 
 namespace pinjaw::fuzz {
@@ -39,26 +36,6 @@ namespace {
 
 using core::test::Scene;
 using core::test::Station;
-
-/// What must be true of a controller at every moment, whatever it hears.
-void keeps_its_invariants(const Station& station) {
-  const core::State& state = station.core;
-  must(static_cast<std::size_t>(state.id) < core::kStates, "no state");
-  const core::Custody custody = state.store.record.custody;
-  if (station.outputs.valves.spool == core::Spool::Open) {
-    const bool decided = custody == core::Custody::Decided && station.memory.record &&
-                         station.memory.record->custody == core::Custody::Decided;
-    must(decided || !core::has_custody(custody),
-         std::string("opens with a part of its own, in ") + wire::to_string(state.id));
-    must(!core::holds(state.id), "opens in a state that holds");
-  }
-  const std::int32_t limit_dn = core::force_limit_dn(state);
-  const std::int32_t wanted_dn = core::force_set_dn(state);
-  must(wanted_dn + state.config.uncertainty_dn <= std::max(limit_dn, state.config.uncertainty_dn),
-       "asks for a force over its limit");
-  must(limit_dn <= state.config.hardware_limit_dn, "a limit over the hardware's");
-  must(station.outputs.send.size <= core::SendQueue::kCapacity, "more frames than there is room for");
-}
 
 /// A frame that means something here: one of the scene's, changed and with its checksum right again.
 wire::Frame meaningful(const Scene& scene, const Station& station, ByteSource& source) {

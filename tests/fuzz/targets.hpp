@@ -31,6 +31,8 @@ std::vector<Target> part_targets();
 std::vector<Target> bus_targets();
 /// What a controller does about frames; bus_targets() has them, too.
 std::vector<Target> controller_targets();
+/// What it does about frames on CAN FD under a key; bus_targets() has them, too.
+std::vector<Target> link_targets();
 
 /// A folder of this process, like the checkout's configs/ but with room for one more file in it, which
 /// relative names of the shipped files find their way from. Gone at the end of the process.

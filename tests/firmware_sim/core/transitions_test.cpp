@@ -49,6 +49,7 @@ Seen seen(State state) {
            {"starved", control.starved_ms},
            {"refilling", control.refilling},
            {"asked", control.asked_ms},
+           {"push", control.push_mdn},
            {"state time", state.timers.state.left_ms()},
            {"stable time", state.timers.stable.left_ms()},
            {"peer time", state.timers.peer_good.left_ms()},
@@ -104,7 +105,7 @@ struct Specified {
   void no_force() { left["permit"] = left["set"] = 0; }
   void no_control() {
     for (const char* part :
-         {"flow", "control reference", "integral", "blocked", "starved", "refilling", "asked"})
+         {"flow", "control reference", "integral", "blocked", "starved", "refilling", "asked", "push"})
       left[part] = 0;
   }
   void receive(std::uint8_t giver, std::uint16_t token, std::uint16_t pair) {
@@ -340,7 +341,7 @@ State disturbed(StateId id, bool flag) {
   state.opening_wanted = state.frozen = state.hold_proven = state.answer_seen = flag;
   state.store.readable = state.store.record_waits = flag;
   state.receiving = {.giver = kPedestal, .token = 17, .pair = 18, .retained = flag};
-  state.control = {Flow::Relieving, 111, 222, 33, 44, flag, 55};
+  state.control = {Flow::Relieving, 111, 222, 33, 44, flag, 55, 66};
   state.timers.state.start(5);
   state.timers.stable.start(6);
   state.timers.peer_good.start(7);

@@ -12,11 +12,6 @@ constexpr int kWatched_ms = 80;  // past every freshness limit of a peer
 
 using wire::MessageType;
 
-std::optional<MessageType> type_of(const wire::Frame& frame) {
-  const auto identifier = wire::identify(frame);
-  return identifier ? std::optional(identifier->type) : std::nullopt;
-}
-
 /// Taken by anyone at any time, in the safe direction (section 2.1), or without a checksum of its own.
 bool is_exempt(const wire::Frame& frame) {
   const auto type = type_of(frame);

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "tests/firmware_sim/faults/scenes.hpp"
+#include "tests/firmware_sim/faults/moments.hpp"
 
 /// Frames that a controller must not act on, made of those that mean something to it, and the oracle of I4:
 /// two runs, one of which hears one of them.

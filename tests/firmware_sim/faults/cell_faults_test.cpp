@@ -19,10 +19,30 @@ using test::TestCell;
 using wire::CommandResult;
 using wire::State;
 
+constexpr double kLimit_n = 100;    // of every layout, under what the grippers can do
+constexpr double kDynamic = 1.05;   // I1
+constexpr int kRelaxed_ms = 150;    // of 200: there is something to squeeze again
+constexpr int kHandoff_ms = 10000;  // chosen: far longer than it takes
+
+std::vector<test::TestGrip> limited_grips() {
+  std::vector<test::TestGrip> grips = test::arm_pedestal_pallet();
+  for (test::TestGrip& grip : grips) grip.limit_n = kLimit_n;
+  return grips;
+}
+
+/// A node in a state of a handoff from the arm to the pedestal.
+struct Point {
+  int node = 1;
+  State state = State::Hold;
+};
+constexpr Point kPoints[] = {
+    {1, State::Hold},  {1, State::Offered}, {1, State::Relax},  {1, State::Resqueeze}, {1, State::Opening},
+    {2, State::Ready}, {2, State::Seating}, {2, State::Seated}, {2, State::Squeezing}, {2, State::Taken}};
+
 /// A cell whose arm holds the part.
 class HoldingCell {
  public:
-  explicit HoldingCell(std::uint64_t seed = 1) : cell(test::arm_pedestal_pallet(), seed) {
+  explicit HoldingCell(std::uint64_t seed = 1) : cell(limited_grips(), seed) {
     EXPECT_TRUE(cell.commission()) << cell.event_log();
     EXPECT_TRUE(cell.load(1)) << cell.event_log();
     listener_ = cell.bus().open();
@@ -39,6 +59,10 @@ class HoldingCell {
     EXPECT_FALSE(truth.dropped) << when;
     EXPECT_FALSE(truth.slipped) << when;
     EXPECT_GE(truth.min_holders.value_or(0), 1) << when;
+    for (const bench::NodeTruth& node : truth.nodes) {
+      EXPECT_LE(node.max_steady_n, kLimit_n) << when << ", node " << node.node;
+      EXPECT_LE(node.max_squeeze_n, kDynamic * kLimit_n) << when << ", node " << node.node;
+    }
   }
 
   /// What crossed the bus since the last call.
@@ -54,10 +78,19 @@ class HoldingCell {
     cell.ask(bench::Meet{{1, 2}});
     if (!asks(1, wire::offer_command(2))) return false;
     if (done() || cell.run_until(done, 100)) return true;
-    if (!asks(2, wire::accept_command(1)) || !cell.run_until([&] { return is(2, State::Seated); }, 3000)) {
-      return false;
-    }
-    return cell.squeeze(2) && cell.run_until(done, 5000);
+    if (!asks(2, wire::accept_command(1))) return false;
+    if (!cell.run_until([&] { return done() || is(2, State::Seated); }, 3000)) return false;
+    if (done()) return true;
+    return cell.squeeze(2) && cell.run_until(done, kHandoff_ms);
+  }
+
+  /// The same, as far as `point`.
+  bool hand_over_to(const Point& point) {
+    const auto there = [&] { return is(point.node, point.state); };
+    if (point.state != State::Resqueeze) return hand_over_until(there);
+    if (!hand_over_until([&] { return is(1, State::Relax); })) return false;
+    cell.run_ms(kRelaxed_ms);
+    return asks(1, wire::plain_command(wire::Op::Abort)) && there();
   }
 
   TestCell cell;
@@ -124,22 +157,17 @@ TEST(Babbler, with_the_highest_priority_takes_the_whole_bus_and_the_part_stays_h
 }
 
 TEST(Babbler, with_the_highest_priority_at_any_point_of_a_handoff_drops_nothing) {
-  struct Point {
-    int node;
-    State state;
-  };
-  for (const Point point :
-       {Point{1, State::Offered}, {2, State::Taken}, {1, State::Relax}, {1, State::Opening}}) {
+  for (const Point& point : kPoints) {
     HoldingCell holding;
-    ASSERT_TRUE(holding.hand_over_until([&] { return holding.is(point.node, point.state); }))
-        << wire::to_string(point.state);
+    ASSERT_TRUE(holding.hand_over_to(point)) << wire::to_string(point.state);
     {
       Babbler babbler(holding, 0x000);
       babbler.run_ms(600);
     }
     holding.cell.run_ms(1500);
     holding.expect_held(wire::to_string(point.state));
-    EXPECT_TRUE(core::holds(holding.firmware(1).id) || core::holds(holding.firmware(2).id));
+    EXPECT_TRUE(core::holds(holding.firmware(1).id) || core::holds(holding.firmware(2).id))
+        << wire::to_string(point.state);
   }
 }
 
@@ -244,30 +272,35 @@ TEST(BusOff, of_a_holder_holds_and_is_told_after_recovery) {
   holding.expect_held("through bus-off");
 }
 
-TEST(BusOff, at_any_point_of_a_handoff_drops_nothing) {
-  struct Point {
-    int node;
-    State state;
-    std::uint32_t broken;
-  };
-  for (const Point point : {Point{1, State::Offered, 1},
-                            {1, State::Offered, 2},
-                            {2, State::Squeezing, 2},
-                            {2, State::Taken, 2},
-                            {2, State::Taken, 1},
-                            {1, State::Relax, 1},
-                            {1, State::Relax, 2},
-                            {1, State::Opening, 1},
-                            {1, State::Opening, 2}}) {
-    HoldingCell holding;
-    ASSERT_TRUE(holding.hand_over_until([&] { return holding.is(point.node, point.state); }))
-        << wire::to_string(point.state);
-    ASSERT_TRUE(drive_off(holding, point.broken));
-    holding.cell.run_ms(2500);
-    const std::string when =
-        std::string(wire::to_string(point.state)) + ", broken " + std::to_string(point.broken);
-    holding.expect_held(when);
-    EXPECT_TRUE(core::holds(holding.firmware(1).id) || core::holds(holding.firmware(2).id)) << when;
+/// What HOLD makes of a state, as a controller asks it of itself once it is off the bus.
+State by_hold(State state) {
+  switch (state) {
+    case State::Offered:
+      return State::Hold;
+    case State::Relax:
+      return State::Resqueeze;
+    case State::Squeezing:
+      return State::Seated;
+    default:
+      return state;
+  }
+}
+
+TEST(BusOff, of_either_at_any_point_of_a_handoff_drops_nothing) {
+  for (const Point& point : kPoints) {
+    for (const std::uint32_t broken : {1U, 2U}) {
+      HoldingCell holding;
+      const std::string when =
+          std::string(wire::to_string(point.state)) + ", broken " + std::to_string(broken);
+      ASSERT_TRUE(holding.hand_over_to(point)) << when;
+      ASSERT_TRUE(drive_off(holding, broken)) << when;
+      const bool itself = static_cast<int>(broken) == point.node;
+      EXPECT_TRUE(holding.is(point.node, itself ? by_hold(point.state) : point.state))
+          << when << ": the state was over before it fell off";
+      holding.cell.run_ms(2500);
+      holding.expect_held(when);
+      EXPECT_TRUE(core::holds(holding.firmware(1).id) || core::holds(holding.firmware(2).id)) << when;
+    }
   }
 }
 

@@ -4,13 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
-#include "firmware_sim/core/guards.hpp"
+#include "firmware_sim/node/fault_spec.hpp"
 #include "tests/firmware_sim/hardware/specimen.hpp"
+#include "tests/firmware_sim/hardware/strike.hpp"
 #include "tests/firmware_sim/support/test_cell.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/nightly.hpp"
@@ -26,26 +27,15 @@ constexpr int kValve_ms = 20;          // I5, after the decision
 
 /// The study's gripper, and nearly the smallest for which the soft start suffices; the same share of it is
 /// uncertain.
-struct Size {
-  double max_squeeze_n;
-  double uncertainty_n;
-};
 constexpr Size kSizes[] = {{140, 12}, {90, 8}};
 
 std::string name_of(const Size& size) {
   return "grippers of " + std::to_string(std::lround(size.max_squeeze_n)) + " N: ";
 }
 
-/// Where the fault strikes: a node in a state of the handoff.
-struct Moment {
-  int node = 1;
-  State state = State::Hold;
-  int after_ms = 5;  ///< in that state
-};
-
 constexpr Moment kMoments[] = {
-    {1, State::Hold},    {1, State::Offered},   {1, State::Relax},     {1, State::Opening}, {2, State::Ready},
-    {2, State::Seating}, {2, State::Seated, 1}, {2, State::Squeezing}, {2, State::Taken},
+    {1, State::Hold},  {1, State::Offered}, {1, State::Relax},     {1, State::Resqueeze}, {1, State::Opening},
+    {2, State::Ready}, {2, State::Seating}, {2, State::Seated, 1}, {2, State::Squeezing}, {2, State::Taken},
 };
 
 // Offsets and drifts to either side; a leak that wants a refill now and then, and one that wants it all the
@@ -98,7 +88,23 @@ const std::vector<std::string> kFaults = {
     "position_stuck",
     "position_lost",
     "hang",
+    "nvm_failed",
 };
+
+/// What a list of faults names, without values.
+std::set<std::string> names_in(const std::string& list) {
+  std::set<std::string> names;
+  std::istringstream each(list);
+  for (std::string fault; std::getline(each >> std::ws, fault, ',');)
+    names.insert(fault.substr(0, fault.find('=')));
+  return names;
+}
+
+TEST(HardwareFaults, are_all_that_a_node_knows) {
+  std::set<std::string> struck;
+  for (const std::string& fault : kFaults) struck.merge(names_in(fault));
+  EXPECT_EQ(struck, names_in(node::known_faults()));
+}
 
 /// Faults that a sensor shows at once, and so must be known within I5's time.
 bool shows_at_once(const std::string& fault) {
@@ -110,127 +116,6 @@ bool shows_at_once(const std::string& fault) {
 /// Faults of the valve that must shut, which then follows no decision.
 bool holds_the_spool(const std::string& fault) {
   return fault.starts_with("spool_");
-}
-
-/// The controller has decided that nothing may flow into the close chamber: over-force, or a fault's state.
-bool has_decided(const core::State& firmware) {
-  return firmware.guard.cut || firmware.id == State::FaultHold || firmware.id == State::FaultEmpty;
-}
-
-/// What is seen of one run.
-struct Outcome {
-  bool struck = false;
-  double peak_n = 0;
-  bool dropped = false;
-  int min_holders = 0;
-  int known_after_ms = -1;    ///< the controller has raised a sensor's fault
-  int unguarded_ms = 0;       ///< longest that sensor B was over the limit and the guard had not cut
-  int unshut_ms = 0;          ///< longest that the true main valve still fed the close side after a decision
-  bool told_to_feed = false;  ///< a decision did not reach what the main valve is told
-  std::set<int> faults;       ///< that the struck node raised
-};
-
-class Striker {
- public:
-  Striker(TestCell& cell, const Moment& moment, std::string fault)
-      : cell_(cell), moment_(moment), fault_(std::move(fault)) {}
-
-  void watch() {
-    const node::Node& one = *cell_.world().find(moment_.node);
-    if (armed && !seen.struck && one.firmware().id == moment_.state && ++waited_ms_ > moment_.after_ms)
-      strike();
-    if (seen.struck) ++since_ms_;
-    for (const int number : {1, 2}) {
-      seen.peak_n = std::max(seen.peak_n, cell_.world().find(number)->truth().most_n);
-    }
-    if (!seen.struck) return;
-    const core::State& firmware = one.firmware();
-    if (firmware.measurement.trouble != core::SensorTrouble::None && seen.known_after_ms < 0) {
-      seen.known_after_ms = since_ms_ - 1;
-    }
-    unguarded_ms_ = firmware.guard.over_ms > 0 && !firmware.guard.cut ? unguarded_ms_ + 1 : 0;
-    seen.unguarded_ms = std::max(seen.unguarded_ms, unguarded_ms_);
-    watch_main_valve(one);
-    for (const wire::FaultCode code : wire::kFaultCodes) {
-      if (firmware.faults.active(code)) seen.faults.insert(static_cast<int>(code));
-    }
-  }
-
-  bool armed = false;
-  Outcome seen;
-
- private:
-  /// A valve that is told something else on its way starts anew.
-  void watch_main_valve(const node::Node& one) {
-    const core::Valves& told = one.told_valves();
-    const bool decided = has_decided(one.firmware());
-    seen.told_to_feed |= decided && told.spool == core::Spool::Close && !told.relax;
-    const bool feeds = one.plant_state().spool == plant::Spool::Close && !told.relax;
-    if (!decided || !feeds || told.spool != told_) unshut_ms_ = 0;
-    if (decided && feeds) ++unshut_ms_;
-    told_ = told.spool;
-    seen.unshut_ms = std::max(seen.unshut_ms, unshut_ms_);
-  }
-
-  void strike() {
-    seen.struck = true;
-    since_ms_ = 0;
-    EXPECT_TRUE(std::holds_alternative<bench::Done>(cell_.ask(bench::Break{moment_.node, fault_}))) << fault_;
-  }
-  TestCell& cell_;
-  Moment moment_;
-  std::string fault_;
-  int waited_ms_ = 0;
-  int since_ms_ = 0;
-  int unguarded_ms_ = 0;
-  int unshut_ms_ = 0;
-  core::Spool told_ = core::Spool::Hold;
-};
-
-/// The grippers, and how the receiver comes to its part.
-struct Cell {
-  Size size = kSizes[0];
-  double separation_mm = 36;
-  bool opened_before = false;  ///< it gave a part away just now: air is left on its open side
-  bool soft_start = true;
-  std::uint64_t specimen = 0;  ///< seed of drawn plants; 0: the study's figures
-};
-
-void draw_grippers(TestCell& cell, std::uint64_t seed) {
-  Draws draws{{.state = seed * 0x9E3779B97F4A7C15U}};
-  for (const int number : {1, 2}) draw_plant(draws, cell.world().find(number)->plant_for_tests());
-}
-
-Outcome strike(const Moment& moment, const std::string& fault, const Cell& given = {}) {
-  const auto grip = [&](int node, double separation_mm, double needed_share) {
-    return TestGrip{.node = node,
-                    .separation_mm = separation_mm,
-                    .needed_n = needed_share * given.size.max_squeeze_n,
-                    .limit_n = given.size.max_squeeze_n,
-                    .max_squeeze_n = given.size.max_squeeze_n,
-                    .uncertainty_n = given.size.uncertainty_n};
-  };
-  TestCell cell({grip(1, 30, 60.0 / 140), grip(2, given.separation_mm, 40.0 / 140)});
-  cell.keep_logs(false);
-  if (given.specimen != 0) draw_grippers(cell, given.specimen);
-  Striker striker(cell, moment, fault);
-  cell.on_step([&] { striker.watch(); });
-  if (!given.soft_start) cell.ask(bench::Break{2, "soft_start_stuck_open"});
-  EXPECT_TRUE(cell.commission() && cell.load(1));
-  if (given.opened_before) {
-    EXPECT_TRUE(cell.hand_over(1, 2));
-    cell.run_ms(300);  // until the giver is clear of the part
-    EXPECT_TRUE(cell.hand_over(2, 1));
-  }
-  cell.run_ms(100);
-  striker.armed = true;
-  cell.run_ms(20);
-  (void)cell.hand_over(1, 2);  // as far as it goes
-  cell.run_ms(2000);
-  Outcome seen = striker.seen;
-  seen.dropped = cell.truth().dropped;
-  seen.min_holders = cell.truth().min_holders.value_or(0);
-  return seen;
 }
 
 /// Where the part may be, near the open position and far, and when the regulator may stick: before the jaws
@@ -284,7 +169,7 @@ TEST(HardwareFaults, without_the_soft_start_it_would_throw_the_jaws_at_the_part)
 }
 
 /// Each `every`th fault, from the `first`, another in each state.
-void expect_safe(const Size& size, std::size_t first, std::size_t every) {
+void expect_safe(const Size& size, std::size_t first, std::size_t every, double keeper_n = 0) {
   double worst_n = 0;
   std::string worst;
   int runs = 0;
@@ -293,13 +178,14 @@ void expect_safe(const Size& size, std::size_t first, std::size_t every) {
   int unguarded_ms = 0;
   int unshut_ms = 0;
   std::size_t next = every - first;
+  const std::string of = name_of(size) + (keeper_n > 0 ? "with a keeper: " : "");
   for (const Moment& moment : kMoments) {
     for (const std::string& fault : kFaults) {
       if (next++ % every != 0) continue;
       const std::string struck = std::to_string(static_cast<int>(moment.state)) + " of node " +
                                  std::to_string(moment.node) + ": " + fault;
-      const std::string what = name_of(size) + struck;
-      const Outcome seen = strike(moment, fault, {size});
+      const std::string what = of + struck;
+      const Outcome seen = strike(moment, fault, {.size = size, .keeper_n = keeper_n});
       EXPECT_TRUE(seen.struck) << what;
       ++runs;
       if (seen.peak_n > worst_n) {
@@ -324,7 +210,6 @@ void expect_safe(const Size& size, std::size_t first, std::size_t every) {
       held += seen.dropped ? 0 : 1;
     }
   }
-  const std::string of = name_of(size);
   figure("HW-FAULT", of + "faults in states", runs);
   figure("HW-FAULT", of + "of them with the part held throughout", held);
   figure("HW-FAULT", of + "highest force", worst_n, "N (" + worst + ")");
@@ -337,6 +222,13 @@ TEST(HardwareFaults, no_single_one_presses_over_the_relief_or_drops_a_part_that_
   constexpr std::size_t kByDay = 14;
   expect_safe(kSizes[0], 0, by_night<std::size_t>(1, kByDay));
   expect_safe(kSizes[1], by_night<std::size_t>(0, kByDay / 2), by_night<std::size_t>(1, kByDay));
+}
+
+/// The specification's keeper: it may neither press too hard nor spoil what the controller makes of a fault.
+TEST(HardwareFaults, none_presses_too_hard_or_drops_the_part_where_a_spring_keeps_it) {
+  constexpr double kKeeper_n = 40;  // 35 to 45 N
+  constexpr std::size_t kByDay = 14;
+  expect_safe(kSizes[0], by_night<std::size_t>(0, kByDay / 4), by_night<std::size_t>(1, kByDay), kKeeper_n);
 }
 
 /// One of `choices`.

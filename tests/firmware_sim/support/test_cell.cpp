@@ -24,6 +24,7 @@ node::Figures figures_of(const TestGrip& grip) {
   figures.can_fd = grip.can_fd;
   figures.force_uncertainty_n = grip.passive ? 0 : grip.uncertainty_n;
   figures.max_squeeze_n = grip.passive ? 0 : grip.max_squeeze_n;
+  if (grip.keeper_n > 0) figures.plant.keeper_n = grip.keeper_n;
   return figures;
 }
 

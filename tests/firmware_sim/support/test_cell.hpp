@@ -22,6 +22,7 @@ struct TestGrip {
   double limit_n = 140;            ///< of the layout
   double max_squeeze_n = 140;      ///< of the gripper
   double uncertainty_n = 12;       ///< of its force
+  double keeper_n = 0;             ///< of the spring behind its catch; 0: none
   std::optional<wire::Key> key{};  ///< the controller asks for; the scripted host knows none
   bool can_fd = false;
   std::optional<wire::Layout> layout{};  ///< of a plan; nothing: one of the figures above

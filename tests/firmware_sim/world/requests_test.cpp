@@ -97,8 +97,8 @@ TEST(World, a_hand_waits_while_the_local_enable_is_held) {
   EXPECT_FALSE(cell.truth().dropped);
 }
 
-TEST(World, a_gripper_releases_the_part_into_a_hand) {
-  TestCell cell(test::arm_pedestal_pallet());
+/// The arm holds a part and lets an operator take it.
+void release_into_a_hand(TestCell& cell) {
   ASSERT_TRUE(cell.commission());
   ASSERT_TRUE(cell.load(1)) << cell.event_log();
   cell.ask(bench::Enable{1, true});
@@ -111,9 +111,30 @@ TEST(World, a_gripper_releases_the_part_into_a_hand) {
   EXPECT_TRUE(cell.wait_for(1, wire::State::Ready, 2000));
   cell.ask(bench::Enable{1, false});
   cell.run_ms(5);
+}
+
+TEST(World, a_gripper_releases_the_part_into_a_hand) {
+  TestCell cell(test::arm_pedestal_pallet());
+  release_into_a_hand(cell);
   EXPECT_FALSE(cell.truth().placed);
   EXPECT_FALSE(cell.truth().dropped);
   EXPECT_EQ(cell.truth().min_holders, 1);
+}
+
+TEST(World, a_part_that_is_refused_leaves_everything_as_it_was) {
+  TestCell cell(test::arm_pedestal_pallet());
+  release_into_a_hand(cell);
+  cell.ask(bench::Disturb{"spray[3]", {{2, 77}}});
+  const bench::Truth before = cell.truth();
+  ASSERT_GT(cell.truth_of(1).max_squeeze_n, 60) << "there is something to lose";
+  ASSERT_EQ(cell.truth_of(1).needed_n, 60);
+  constexpr double kWiderThanTheJaws_mm = 70;
+  EXPECT_THAT(why(cell.ask(bench::Place{1, {{1, kWiderThanTheJaws_mm, 20}, {2, 50, 20}}})),
+              HasSubstr("the part needs 70.00 mm"));
+  EXPECT_THAT(why(cell.ask(bench::Place{1, {{2, 50, 20}}})), HasSubstr("no grasp of node 1"));
+  EXPECT_EQ(bench::encode(cell.truth()), bench::encode(before));
+  EXPECT_TRUE(done(cell.ask(bench::Place{1, {{1, 30, 20}}}))) << "what is not refused does change it";
+  EXPECT_NE(bench::encode(cell.truth()), bench::encode(before));
 }
 
 TEST(World, a_disturbance_lasts_until_the_next_and_unnamed_stations_keep_theirs) {
