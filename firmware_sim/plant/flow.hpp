@@ -11,7 +11,7 @@ struct Restriction {
 constexpr double kDm3PerSecondBar = 1e-8;    // 1 dm3/(s bar) in m3/(s Pa)
 constexpr double kAtmosphere_Pa = 101325.0;  // standard atmosphere
 constexpr double kAirConstant = 287.05;      // J/(kg K), dry air
-constexpr double kTemperature_K = 293.15;    // ISO 6358 T0; walls stay there, and air under the polytropic law
+constexpr double kTemperature_K = 293.15;  // ISO 6358 T0; walls stay there, and air under the polytropic law
 constexpr double kReferenceDensity = 1.185;  // kg/m3, ISO 6358 rho0 at T0, 1 bar, 65 % humidity
 
 /// Mass flow in kg/s from `from_pa` to `to_pa` (absolute), negative when it runs back (ISO 6358-1, the

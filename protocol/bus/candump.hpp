@@ -19,7 +19,8 @@ struct LogLine {
 /// One line without its end; always six decimals, which canplayer insists on.
 std::string to_log_line(const LogLine& line);
 
-/// A line of a log, or a sentence about what is wrong with it. Of CAN FD, frames of 12 bytes are read and others refused.
+/// A line of a log, or a sentence about what is wrong with it. Of CAN FD, frames of 12 bytes are read and
+/// others refused.
 Expected<LogLine> parse_log_line(std::string_view text);
 
 }  // namespace pinjaw::bus
