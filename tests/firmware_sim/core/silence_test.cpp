@@ -1,4 +1,4 @@
-// Promises: I6, I5.
+// Promises: I3, I5, I6.
 #include <gtest/gtest.h>
 
 #include "tests/firmware_sim/core/bench.hpp"
