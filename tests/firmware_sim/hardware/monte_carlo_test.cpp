@@ -36,7 +36,7 @@ struct Result {
   bool held = false;
   double true_share = 0;          ///< true squeeze of the needed one, at its least while holding
   double late_s = 0;              ///< time to hold less travel at 30 mm/s
-  double peak_share = 0;          ///< of the limit that held at the time
+  double peak_share = 0;          ///< of the layout's limit
   double steady_share = 0;        ///< the same, exceeded for more than 20 ms
   double touch_n = 0;             ///< peak while the squeeze is light
   double approach_droop_bar = 0;  ///< most that a neighbour took of the supply while the jaws closed
