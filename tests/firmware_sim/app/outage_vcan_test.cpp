@@ -1,7 +1,7 @@
 // Promises: BUS-STRESS.
 // A controller that holds a part while its bus goes wrong: the interface goes down, away and comes back, its
-// CAN controller is bus-off, its transmit queue is plugged, another speaks under its number. It holds on,
-// tells and counts it, and is there again afterwards.
+// CAN controller is bus-off, its transmit queue is plugged, it is stopped and overrun, another speaks under
+// its number. It holds on, tells and counts it, and is there again afterwards.
 #include "protocol/wire/codec.hpp"
 #include "tests/firmware_sim/app/live_jaw.hpp"
 
@@ -77,6 +77,29 @@ TEST_F(JawInTrouble, holds_while_nothing_it_sends_leaves) {
   meet_host();
   EXPECT_TRUE(host_->in(wire::State::Hold)) << said();
   expect_held();
+}
+
+/// Stopped by its system for a second while others say more than its socket can keep.
+TEST_F(JawInTrouble, holds_though_it_could_not_read_all_that_came) {
+  auto listener = socketcan::SocketBus::open(
+      "vcan0", {.filters = {{.id = wire::id_of({wire::MessageType::Fault, 1}), .mask = 0x7FF}}});
+  ASSERT_TRUE(listener) << listener.error().message;
+  program_->signal(SIGSTOP);
+  ASSERT_TRUE(shell("cangen vcan0 -g 0 -n 40000 -I 0F0 -L 8 -D 0000000000000000 -i"));
+  std::this_thread::sleep_for(std::chrono::seconds(1));
+  program_->signal(SIGCONT);
+  meet_host();
+  EXPECT_TRUE(tells("lost receiving"));
+  bool told_on_the_bus = false;
+  for (auto next = (*listener)->receive(); next && *next; next = (*listener)->receive()) {
+    const auto fault = wire::parse<wire::FaultReport>((*next)->frame);
+    told_on_the_bus |=
+        fault && fault->label.node == 1 && fault->message.code == wire::FaultCode::ReceiveOverrun;
+  }
+  EXPECT_TRUE(told_on_the_bus);
+  expect_held();
+  meet_host();
+  EXPECT_TRUE(host_->in(wire::State::Hold)) << said();
 }
 
 TEST_F(JawInTrouble, tells_that_another_speaks_under_its_number) {
