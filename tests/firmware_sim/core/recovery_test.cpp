@@ -100,6 +100,7 @@ TEST_F(Recovery, by_the_watchdog_holds_and_gives_nothing_away_until_the_fault_is
   bench.arm().power_on_again();
   ASSERT_TRUE(bench.reaches(kArm, StateId::Hold));
   EXPECT_TRUE(bench.arm().core.faults.active(wire::FaultCode::Watchdog));
+  bench.run(300);  // until it believes its host again
   bench.arm_session(kArm);
   EXPECT_EQ(bench.result_of(kArm, wire::offer_command(kPedestal)), wire::CommandResult::Refused);
   EXPECT_EQ(bench.result_of(kArm, wire::plain_command(wire::Op::ClearFault)), wire::CommandResult::Ok);
