@@ -164,7 +164,7 @@ struct State {
   bool opening_wanted = false;    ///< READY: the jaws are on their way to fully open
   bool hold_proven = false;       ///< the hold was stable at least once since power came
   bool answer_seen = false;       ///< OFFERED: a TAKE for this token was heard
-  wire::ResetCause reset = wire::ResetCause::PowerOn;  ///< what began this run
+  wire::ResetCause reset{};       ///< what began this run
 };
 
 }  // namespace pinjaw::core

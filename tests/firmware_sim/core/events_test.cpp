@@ -260,6 +260,11 @@ TEST(NextEvent, while_offered_is_the_receivers_hold_or_that_nobody_answers) {
                            s.answer_seen = true;
                          }},
                         {Event::OfferUnanswered, [](State& s) { s.session_epoch = 78; }},
+                        {Event::OfferUnanswered,
+                         [](State& s) {
+                           s.host = {};
+                           s.session_epoch = 0;  // as nobody's is
+                         }},
                         {std::nullopt,
                          [](State& s) {
                            s.session_epoch = 78;

@@ -78,21 +78,23 @@ TEST_F(Neighbours, are_faulty_for_320_ms_after_a_report_for_which_they_must_hold
   EXPECT_FALSE(peer.faulty.running());
   fault(0, wire::Severity::Warning, true);
   EXPECT_FALSE(peer.faulty.running());
-  fault(1, wire::Severity::Hold, true);
+  fault(1, wire::Severity::Hold, false);
+  EXPECT_FALSE(peer.faulty.running());
+  fault(2, wire::Severity::Hold, true);
   peers.advance(319);
   EXPECT_TRUE(peer.faulty.running());
   peers.advance(1);
   EXPECT_FALSE(peer.faulty.running());
-  fault(2, wire::Severity::Latched, true);
+  fault(3, wire::Severity::Latched, true);
   EXPECT_TRUE(peer.faulty.running());
-  fault(3, wire::Severity::Warning, false);
+  fault(4, wire::Severity::Warning, false);
   EXPECT_TRUE(peer.faulty.running()) << "a warning that went";
-  fault(4, wire::Severity::Hold, false);
+  fault(5, wire::Severity::Hold, false);
   EXPECT_TRUE(peer.faulty.running()) << "one that went, where another may be there";
   peers.advance(320);
-  fault(4, wire::Severity::Hold, true);
-  EXPECT_FALSE(peer.faulty.running()) << "a repeated frame";
   fault(5, wire::Severity::Hold, true);
+  EXPECT_FALSE(peer.faulty.running()) << "a repeated frame";
+  fault(6, wire::Severity::Hold, true);
   EXPECT_TRUE(peer.faulty.running());
 }
 

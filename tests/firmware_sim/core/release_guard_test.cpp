@@ -302,6 +302,30 @@ TEST(ReleaseGuard, lets_only_how_a_past_handoff_ended_stand_beside_what_was_said
   }
 }
 
+TEST(ReleaseGuard, after_bus_off_takes_a_decision_for_made_only_where_one_was_and_it_permitted_it) {
+  NvmRecord record;
+  ReleaseGuard permitted;
+  permitted.peer_permits = true;
+  permitted.peer = record.peer = kPedestal;
+  permitted.token = record.token = 7;
+  for (const bool decided : {false, true}) {
+    record.custody = decided ? Custody::Decided : Custody::Sole;
+    EXPECT_EQ(guard_after_bus_off(permitted, arm_config(), record).decided_before, decided);
+    EXPECT_FALSE(guard_after_bus_off(ReleaseGuard{}, arm_config(), record).decided_before);
+  }
+}
+
+TEST(ReleaseGuard, permits_no_answer_by_hand_where_nothing_was_asked) {
+  for (std::uint16_t answer = 0; answer < 3; ++answer) {
+    ReleaseGuard guard;
+    guard.asked.start(3000);
+    const Release by_hand{.peer = wire::kOperatorPeer};
+    watch(guard, arm_config(), by_hand,
+          std::vector<wire::Frame>{wire::pack(wire::manual_release_answer(answer), {.node = kArm})}, true, 1);
+    EXPECT_FALSE(guard.hand_permits) << answer;
+  }
+}
+
 TEST(ReleaseGuard, permits_a_release_by_hand_only_as_asked_and_answered_with_the_local_enable) {
   NvmRecord record;
   record.custody = Custody::Decided;

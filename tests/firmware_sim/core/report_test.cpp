@@ -374,6 +374,9 @@ TEST(OutcomesSaid, take_turns_every_100_ms_but_for_the_one_that_is_said_now) {
   }
   state.store.record.custody = Custody::Sole;
   EXPECT_EQ(outcomes_of(state, 501), (std::vector{42, 43, 44, 45, 42, 43}));
+  state.store.record.peer = 2;
+  state.store.record.token = 42;
+  EXPECT_EQ(outcomes_of(state, 501), (std::vector{42, 43, 44, 45, 42, 43})) << "SOLE is no end of it";
   for (const Custody custody : {Custody::Released, Custody::Retained}) {
     state.store.record.custody = custody;
     for (const bool of_newest : {true, false}) {  // else it was given to the operator, which is no outcome

@@ -141,6 +141,20 @@ TEST(Time, passes_for_hosts_neighbours_timers_and_lock_outs) {
   EXPECT_EQ(node.state.timers.state.left_ms(), 5'000) << "a minute at most";
 }
 
+/// An approach has its time while it may move, and only then.
+TEST(Time, of_an_approach_passes_while_it_is_permitted) {
+  for (const auto& [armed, permit, passes] :
+       {std::tuple{true, true, true}, {true, false, false}, {false, true, false}}) {
+    Node node(made(Seating));
+    node.state.host = {};
+    hear_host(node.state, 77, permit);
+    if (!armed) node.state.gate.close();
+    node.state.timers.state.start(100);
+    node.step({}, 60);
+    EXPECT_EQ(node.state.timers.state.left_ms(), passes ? 40 : 100) << armed << permit;
+  }
+}
+
 TEST(Reacting, does_four_things_in_a_step_and_the_fifth_in_the_next) {
   Node node(taken(wire::Fact::Offer));
   node.state.measurement.troubled_ms = 10;
@@ -237,6 +251,20 @@ TEST(Release, is_watched_by_what_record_and_layout_say_of_the_peer) {
     hear_hold(node, 400);
     EXPECT_FALSE(node.state.release_guard.peer_permits) << "no handoff is under way";
     EXPECT_EQ(node.state.release_guard.peer, 0);
+  }
+}
+
+TEST(Release, by_hand_is_watched_with_the_challenge_while_it_may_be_answered) {
+  for (const bool running : {true, false}) {
+    for (const std::uint16_t answer : {std::uint16_t{1}, std::uint16_t{1415}}) {
+      Node node(held(Hold));
+      node.inputs.sensors.local_enable = true;
+      node.state.release_guard.asked.start(3000);
+      node.state.challenge = 1415;
+      if (running) node.state.timers.challenge.start(3000);
+      node.step({wire::pack(wire::manual_release_answer(answer), {.node = kArm})});
+      EXPECT_EQ(node.state.release_guard.hand_permits, running && answer == 1415) << running << answer;
+    }
   }
 }
 
