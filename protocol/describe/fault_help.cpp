@@ -31,9 +31,10 @@ constexpr std::array kHelps = {
     FaultHelp{FaultCode::Position, "the jaw separation reads what the jaws cannot have",
               "a broken position sensor or its cable",
               "check the sensor; the controller holds by force meanwhile"},
-    FaultHelp{FaultCode::Watchdog, "the controller's program stopped and was started again",
-              "a defect of hardware or firmware",
-              "note what was going on; the custody record was restored: pinjaw jaw status", false},
+    FaultHelp{
+        FaultCode::Watchdog, "the controller's program stopped and was started again",
+        "a defect of hardware or firmware",
+        "note what was going on; the custody record was restored: pinjaw jaw status, then pinjaw jaw clear"},
     FaultHelp{FaultCode::MemorySelfTest,
               "the controller's memory failed its test, or its two channels differ on whether to let go",
               "a defective controller; it holds", "support the part, replace the controller"},
