@@ -44,10 +44,15 @@ def equivalents(path):
     return found
 
 
+def without_figures():
+    """The environment of tests that state none: those of a mutant are not ours."""
+    return {name: value for name, value in os.environ.items() if name != "PINJAW_FIGURES"}
+
+
 def reach(program, folder):
     out = folder / "reach.txt"
     if not out.exists() or out.stat().st_mtime < program.stat().st_mtime:
-        subprocess.run([program, "--reach", folder / "reach.new"], check=True)
+        subprocess.run([program, "--reach", folder / "reach.new"], check=True, env=without_figures())
         (folder / "reach.new").rename(out)
     tests = []
     for line in out.read_text().splitlines():
@@ -100,7 +105,7 @@ def main():
         if mine:
             plan.append(f"{mutant['id']} {' '.join(mine)}\n")
     (folder / "plan.txt").write_text("".join(plan))
-    subprocess.run([program, "--kill", folder / "plan.txt", folder / "kills.txt"], check=True)
+    subprocess.run([program, "--kill", folder / "plan.txt", folder / "kills.txt"], check=True, env=without_figures())
     cpu_ms, killers = 0.0, Counter()
     for line in (folder / "kills.txt").read_text().splitlines():
         mutant, verdict, ms, *test = line.split()

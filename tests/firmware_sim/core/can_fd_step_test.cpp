@@ -110,6 +110,23 @@ TEST(CanFdStep, lets_the_release_guard_see_no_frame_without_the_mac) {
   EXPECT_FALSE(node.state.peers.find(kPedestal)->custody_fresh.running());
 }
 
+TEST(CanFdStep, counts_what_nobody_sealed_and_learns_nothing_from_it) {
+  FdNode node;
+  node.step({});
+  for (const wire::Frame& frame : node.outputs.send.view()) (void)node.pedestal.open(kSharedKey, frame);
+  auto answer = node.pedestal.speak(kSharedKey, 1);
+  ASSERT_TRUE(answer);
+  answer->tail[3] ^= 1U;
+  node.step({*answer});
+  EXPECT_FALSE(node.state.link.knows(kPedestal));
+  EXPECT_EQ(node.state.link.refused(), 1U);
+  wire::Frame nobodys = node.from_pedestal(wire::Force{});
+  nobodys.id = 0x7F0;  // of no message
+  node.step({nobodys});
+  EXPECT_EQ(node.state.link.refused(), 2U);
+  EXPECT_EQ(node.state.counters.bad_frames, 0U);
+}
+
 TEST(CanFdStep, counts_a_frame_that_is_authentic_and_means_nothing) {
   FdNode node;
   ASSERT_NO_FATAL_FAILURE(node.get_acquainted());
