@@ -4,6 +4,8 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "tests/support/nightly.hpp"
+
 namespace pinjaw::test {
 namespace {
 
@@ -31,7 +33,8 @@ std::string grouped(std::int64_t value) {
 
 void figure(std::string_view promise, std::string_view what, std::string_view value, std::string_view unit) {
   const std::string line = "{\"promise\": " + quoted(promise) + ", \"what\": " + quoted(what) +
-                           ", \"value\": " + quoted(value) + ", \"unit\": " + quoted(unit) + "}\n";
+                           ", \"value\": " + quoted(value) + ", \"unit\": " + quoted(unit) +
+                           (nightly() ? ", \"night\": true}\n" : "}\n");
   std::printf("figure %s", line.c_str());
   const char* path = std::getenv("PINJAW_FIGURES");
   if (path == nullptr || *path == '\0') return;
