@@ -21,6 +21,17 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 
 
+def decisions(branches):
+    """Their counts. A call that may throw has two ways on, back and by exception; neither is a decision of the source."""
+    counts = []
+    for branch, before in zip(branches, [None, *branches]):
+        if not branch["throw"]:
+            counts.append(branch["count"])
+        elif before and before["fallthrough"]:
+            counts.pop()
+    return counts
+
+
 def counted(data, sources):
     """(file, line), runs, counts of branches of each copy of each line of `sources` that `data`, a file of counts, knows."""
     said = subprocess.run(["gcov", "--json-format", "--stdout", "--branch-probabilities", "--branch-counts", data.resolve()],
@@ -31,8 +42,7 @@ def counted(data, sources):
             if not any(path.is_relative_to(source) for source in sources):
                 continue
             for line in file["lines"]:
-                counts = [branch["count"] for branch in line["branches"] if not branch["throw"]]
-                yield (path, line["line_number"]), line["count"], counts
+                yield (path, line["line_number"]), line["count"], decisions(line["branches"])
 
 
 def merged(copies):
