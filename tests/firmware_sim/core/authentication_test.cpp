@@ -23,11 +23,11 @@ constexpr wire::Key kKey{7, 1, 8, 2, 8, 1, 8, 2, 8, 4, 5, 9, 0, 4, 5, 2};
 
 /// What a node does and remembers, but for what it says of bad commands.
 struct Doing {
-  StateId id;
+  StateId id{};
   Valves valves;
   NvmRecord record;
-  std::uint16_t session;
-  std::uint32_t number;
+  std::uint16_t session = 0;
+  std::uint32_t number = 0;
   friend bool operator==(const Doing&, const Doing&) = default;
 };
 
@@ -138,6 +138,7 @@ TEST_F(Authenticated,
       ++replays;
     }
     std::vector<wire::Frame> all;
+    all.reserve(said.size());
     for (const auto& entry : said) all.push_back(entry.second);
     EXPECT_EQ(after(station, all).id, untouched.id) << when;
   };

@@ -1,6 +1,7 @@
 #include "tests/host/planner/robust/vise.hpp"
 
 #include <cmath>
+#include <cstddef>
 #include <nlopt.hpp>
 
 namespace pinjaw::planner {
@@ -70,7 +71,7 @@ void intrusions(unsigned m, double* result, unsigned n, const double* x, double*
   for (unsigned pin = 0; pin < m; ++pin) {
     const auto inside = [&](const double* at) { return -vise.room_mm(at, pin); };
     result[pin] = inside(x);
-    if (gradient != nullptr) differentiate(inside, n, x, gradient + pin * n);
+    if (gradient != nullptr) differentiate(inside, n, x, gradient + std::size_t{pin} * n);
   }
 }
 
