@@ -124,10 +124,10 @@ void put_crc(std::vector<std::uint8_t>& bytes, std::size_t from, std::size_t to)
 void seal_layout(std::vector<std::uint8_t>& bytes) {
   constexpr std::size_t kPinCount = 20;  // place of the number of pins
   if (bytes.size() <= kPinCount) return;
-  const std::size_t body = kPinCount + 1 + 6U * bytes[kPinCount] + 17;
+  const std::size_t body = kPinCount + 1 + std::size_t{6} * bytes[kPinCount] + 17;
   put_crc(bytes, 0, body);
   const std::size_t peers = body + 4;
-  if (peers < bytes.size()) put_crc(bytes, peers, peers + 1 + 9U * bytes[peers]);
+  if (peers < bytes.size()) put_crc(bytes, peers, peers + 1 + std::size_t{9} * bytes[peers]);
 }
 
 /// First byte: whether the checksums are made right. The rest is the record.

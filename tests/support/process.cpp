@@ -31,6 +31,7 @@ Process::Process(std::vector<std::string> command, const std::string& output, co
   if (child_ != 0) return;
   if (!redirect(STDOUT_FILENO, output) || !redirect(STDERR_FILENO, errors)) _exit(126);
   std::vector<char*> arguments;
+  arguments.reserve(command.size() + 1);
   for (std::string& word : command) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   execvp(arguments.front(), arguments.data());

@@ -28,7 +28,7 @@ constexpr bool kRecords = false;
 
 /// A state as its default makes it, where all memory was `fill` before.
 std::array<std::uint8_t, sizeof(State)> state_in(std::uint8_t fill) {
-  alignas(State) std::array<std::uint8_t, sizeof(State)> memory;
+  alignas(State) std::array<std::uint8_t, sizeof(State)> memory{};
   memory.fill(fill);
   asm volatile("" : : "r"(memory.data()) : "memory");  // the fill is read below
   new (memory.data()) State;

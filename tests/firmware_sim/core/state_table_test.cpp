@@ -130,7 +130,6 @@ std::uint32_t heeding(Event event) {
     case Event::OverForce:
       return only({Seating, Seated, Taken, Hold, Relax, Resqueeze});
     case Event::Slip:
-      return only({Taken, Hold});
     case Event::HoldLost:
       return only({Taken, Hold});
     case Event::Opened:

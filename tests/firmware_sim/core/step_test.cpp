@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <tuple>
-#include <utility>
 #include <vector>
 
 #include "firmware_sim/core/transitions.hpp"
@@ -22,7 +21,7 @@ struct Node {
   Outputs outputs{};
   Inputs inputs{};
 
-  explicit Node(State made) : state(std::move(made)) {
+  explicit Node(const State& made) : state(made) {
     inputs.sensors.close_mbar = {2500, 2500};  // 52.8 N at least
     inputs.sensors.supply_mbar = 6000;
     inputs.sensors.separation_10um = 3000;

@@ -183,7 +183,7 @@ struct Specified {
     }
   }
 
-  void come_to(StateId to) {
+  void come_to(StateId to) {  // NOLINT(readability-function-size): a case for each state
     const Receiving& receiving = before.receiving;
     const NvmRecord& found = before.store.record;
     left["id"] = static_cast<int>(to);

@@ -169,7 +169,8 @@ TEST(HardwareFaults, without_the_soft_start_it_would_throw_the_jaws_at_the_part)
 }
 
 /// Each `every`th fault, from the `first`, another in each state.
-void expect_safe(const Size& size, std::size_t first, std::size_t every, double keeper_n = 0) {
+void expect_safe(  // NOLINT(readability-function-size): one list of what is expected
+    const Size& size, std::size_t first, std::size_t every, double keeper_n = 0) {
   double worst_n = 0;
   std::string worst;
   int runs = 0;
