@@ -36,12 +36,16 @@ ExitCode fail(ExitCode code, const std::string& why) {
   return code;
 }
 
+/// Whether one of the files describes that node.
+bool has_node(const std::vector<node::Figures>& members, int node) {
+  return std::ranges::find(members, node, &node::Figures::node) != members.end();
+}
+
 /// A fault for a node that none of the files describes.
 const jaw_app::TimedFault* homeless(const std::vector<jaw_app::TimedFault>& faults,
                                     const std::vector<node::Figures>& members) {
-  const auto found = std::ranges::find_if(faults, [&](const auto& fault) {
-    return std::ranges::find(members, fault.node, &node::Figures::node) == members.end();
-  });
+  const auto found =
+      std::ranges::find_if(faults, [&](const auto& fault) { return !has_node(members, fault.node); });
   return found == faults.end() ? nullptr : &*found;
 }
 
@@ -68,7 +72,7 @@ ExitCode simulate(const jaw_app::Options& options) {
                                              fault->text, fault->node));
   }
   for (const auto& [node, interface] : options.interfaces) {
-    if (std::ranges::find(*members, node, &node::Figures::node) == members->end()) {
+    if (!has_node(*members, node)) {
       return fail(ExitCode::Usage, fmt::format("--node-bus {}=can:{}: no controller file is of node {}", node,
                                                interface, node));
     }
@@ -84,7 +88,7 @@ ExitCode simulate(const jaw_app::Options& options) {
   }
   std::vector<std::unique_ptr<jaw_app::BoardLine>> boards;
   for (const jaw_app::OuterBoard& board : options.boards) {
-    if (std::ranges::find(*members, board.node, &node::Figures::node) == members->end()) {
+    if (!has_node(*members, board.node)) {
       return fail(ExitCode::Usage,
                   fmt::format("--board {}=...: no controller file is of node {}", board.node, board.node));
     }

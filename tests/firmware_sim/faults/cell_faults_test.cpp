@@ -8,6 +8,7 @@
 #include <map>
 
 #include "protocol/wire/names.hpp"
+#include "tests/firmware_sim/faults/by_hold.hpp"
 #include "tests/firmware_sim/support/test_cell.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/nightly.hpp"
@@ -15,6 +16,7 @@
 namespace pinjaw::world {
 namespace {
 
+using test::by_hold;
 using test::TestCell;
 using wire::CommandResult;
 using wire::State;
@@ -270,20 +272,6 @@ TEST(BusOff, of_a_holder_holds_and_is_told_after_recovery) {
   EXPECT_TRUE(std::ranges::any_of(heard, [](const auto& each) { return each.frame.id == 0x061; }));
   EXPECT_TRUE(holding.firmware(1).host.alive()) << "qualified anew";
   holding.expect_held("through bus-off");
-}
-
-/// What HOLD makes of a state, as a controller asks it of itself once it is off the bus.
-State by_hold(State state) {
-  switch (state) {
-    case State::Offered:
-      return State::Hold;
-    case State::Relax:
-      return State::Resqueeze;
-    case State::Squeezing:
-      return State::Seated;
-    default:
-      return state;
-  }
 }
 
 TEST(BusOff, of_either_at_any_point_of_a_handoff_drops_nothing) {

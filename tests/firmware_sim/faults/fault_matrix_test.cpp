@@ -7,12 +7,14 @@
 
 #include "protocol/wire/names.hpp"
 #include "protocol/wire/timing.hpp"
+#include "tests/firmware_sim/faults/by_hold.hpp"
 #include "tests/firmware_sim/faults/disturbed_scene.hpp"
 #include "tests/support/figures.hpp"
 
 namespace pinjaw::core::test {
 namespace {
 
+using pinjaw::test::by_hold;
 using wire::MessageType;
 
 enum class Effect : std::uint8_t {
@@ -88,20 +90,6 @@ StateId without_host(StateId state) {
 /// What a state becomes once the peer that it watches is silent.
 StateId without_peer(StateId state) {
   return state == StateId::Relax ? StateId::Resqueeze : state;
-}
-
-/// What a state becomes by HOLD.
-StateId by_hold(StateId state) {
-  switch (state) {
-    case StateId::Squeezing:
-      return StateId::Seated;
-    case StateId::Offered:
-      return StateId::Hold;
-    case StateId::Relax:
-      return StateId::Resqueeze;
-    default:
-      return state;
-  }
 }
 
 /// What a state becomes by the command of told_in().
